@@ -1,0 +1,1 @@
+"""From a DXF drawing to a verified joint-setpoint program for a delta-robot laser cutter."""

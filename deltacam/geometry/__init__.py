@@ -1,0 +1,1 @@
+"""Plane curves on arrays: lines, arcs, their lengths, headings, flattening and fitting."""

@@ -1,0 +1,233 @@
+"""Measures of a curve of lines and arcs, and the plain operations on it.
+
+A bulge b stands for an arc that turns by 4 atan(b) over the chord c between its ends; its curvature is
+4 b / (c (1 + b^2)), positive to the left. Everything here is vectorised over the segments.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from deltacam.model import Array, Curve, IntArray
+
+
+def circle(centre: Array, radius: float) -> Curve:
+    """A circle as two half circles, counter-clockwise from its right-most point."""
+    arm = np.array([radius, 0.0])
+    return Curve(points=np.array([centre + arm, centre - arm]), bulges=np.ones(2))
+
+
+def polygon(points: Array) -> Curve:
+    """The closed curve of straight lines through ``points``, (N, 2) m."""
+    return Curve(points=points, bulges=np.zeros(len(points)))
+
+
+def turns(curve: Curve) -> Array:
+    """The signed angle that each segment turns through, (M,) rad; positive to the left, 0 for a line."""
+    return 4.0 * np.arctan(curve.bulges)
+
+
+def chords(curve: Curve) -> Array:
+    """The vector from the start to the end of each segment, (M, 2) m."""
+    return curve.ends - curve.starts
+
+
+def lengths(curve: Curve) -> Array:
+    """The arc length of each segment, (M,) m."""
+    chord = np.hypot(*chords(curve).T)
+    half = 0.5 * np.abs(turns(curve))
+    # np.sinc(x / pi) is sin(x) / x, exact at 0.
+    return np.asarray(chord / np.sinc(half / np.pi))
+
+
+def length(curve: Curve) -> float:
+    """The arc length of the curve, m."""
+    return float(lengths(curve).sum())
+
+
+def curvatures(curve: Curve) -> Array:
+    """The signed curvature of each segment, (M,) 1/m; positive to the left. A segment of length 0 has curvature 0."""
+    chord = np.hypot(*chords(curve).T)
+    rise = 4.0 * curve.bulges / (1.0 + curve.bulges**2)
+    return np.divide(rise, chord, out=np.zeros_like(chord), where=chord > 0.0)
+
+
+def headings(curve: Curve) -> tuple[Array, Array]:
+    """The direction at the start and at the end of each segment, (M,) and (M,) rad, the end not wrapped."""
+    chord = chords(curve)
+    turn = turns(curve)
+    start = np.arctan2(chord[:, 1], chord[:, 0]) - 0.5 * turn
+    return start, start + turn
+
+
+def corner_angles(curve: Curve) -> Array:
+    """The change of direction at each vertex that joins two segments, (M,) rad in (-pi, pi]; positive to the left.
+
+    For a closed curve entry i belongs to ``points[i]``; for an open one to ``points[i + 1]``, without the two ends.
+    """
+    start, end = headings(curve)
+    change = start - np.roll(end, 1) if curve.closed else start[1:] - end[:-1]
+    return np.asarray(np.pi - np.mod(np.pi - change, 2.0 * np.pi))
+
+
+def signed_area(curve: Curve) -> float:
+    """The enclosed area of a closed curve, m2; positive when it runs counter-clockwise.
+
+    The polygon through the vertices (shoelace, taken about the first point) plus a circular segment r^2 (turn - sin
+    turn) / 2 per arc.
+    """
+    arm = curve.points - curve.points[0]
+    after = np.roll(arm, -1, axis=0)
+    polygon_area = 0.5 * float(np.sum(arm[:, 0] * after[:, 1] - arm[:, 1] * after[:, 0]))
+    turn = turns(curve)
+    chord_squared = np.sum(chords(curve) ** 2, axis=1)
+    # r^2 = chord^2 / (4 sin^2(turn / 2)); the series of the quotient keeps tiny arcs exact.
+    small = np.abs(turn) < 1e-2
+    safe = np.where(small, 1.0, turn)
+    factor = np.where(
+        small, turn / 12.0 * (1.0 + turn**2 / 30.0), (safe - np.sin(safe)) / (8.0 * np.sin(safe / 2.0) ** 2)
+    )
+    return polygon_area + float(np.sum(chord_squared * factor))
+
+
+def reverse(curve: Curve) -> Curve:
+    """The same curve run the other way; a closed one keeps its first point."""
+    if curve.closed:
+        points = np.roll(curve.points[::-1], 1, axis=0)
+        return Curve(points=points, bulges=-curve.bulges[::-1])
+    return Curve(points=curve.points[::-1], bulges=-curve.bulges[::-1], closed=False)
+
+
+def transform(
+    curve: Curve, *, scale: float = 1.0, rotation: float = 0.0, shift: tuple[float, float] = (0.0, 0.0)
+) -> Curve:
+    """The curve scaled (> 0), then turned by ``rotation`` rad about the origin, then shifted by m."""
+    cos, sin = np.cos(rotation), np.sin(rotation)
+    points = scale * curve.points @ np.array([[cos, sin], [-sin, cos]]) + np.asarray(shift)
+    return replace(curve, points=points)
+
+
+def evaluate(curve: Curve, segment: IntArray, distance: Array) -> tuple[Array, Array]:
+    """The points (N, 2) m and directions (N,) rad at ``distance`` m from the start of the given segments.
+
+    Args:
+        curve: any.
+        segment: (N,) indices of segments.
+        distance: (N,) m; outside [0, length] it continues the line or circle.
+    """
+    start_heading, _ = headings(curve)
+    return advance(curve.starts[segment], start_heading[segment], curvatures(curve)[segment], distance)
+
+
+def advance(start: Array, heading: Array, curvature: Array, distance: Array) -> tuple[Array, Array]:
+    """The point and direction after ``distance`` m along lines and arcs.
+
+    Args:
+        start: (N, 2) m.
+        heading: (N,) rad at the start.
+        curvature: (N,) 1/m.
+        distance: (N,) m, of any sign.
+
+    Returns:
+        points (N, 2) m, directions (N,) rad. The chord of an arc of length s and turn a is s sin(a/2) / (a/2) long and
+        lies at half the turn.
+    """
+    half = 0.5 * curvature * distance
+    chord = distance * np.sinc(half / np.pi)
+    direction = heading + half
+    points = start + np.stack([chord * np.cos(direction), chord * np.sin(direction)], axis=1)
+    return points, heading + 2.0 * half
+
+
+def flatten(curve: Curve, sagitta: float) -> tuple[Array, IntArray]:
+    """The vertices of a polyline that leaves the curve by at most ``sagitta``, all on the curve.
+
+    Args:
+        curve: any.
+        sagitta: largest distance of a chord from its arc, m, > 0.
+
+    Returns:
+        points (K, 2) m and the segment that each belongs to, (K,); a closed curve does not repeat its first point, an
+        open one ends with its last point.
+    """
+    turn = np.abs(turns(curve))
+    radius = np.divide(lengths(curve), turn, out=np.full_like(turn, np.inf), where=turn > 0.0)
+    # A chord of angle a has the sagitta r (1 - cos(a / 2)).
+    step = 2.0 * np.arccos(np.clip(1.0 - sagitta / radius, -1.0, 1.0))
+    pieces = np.ceil(np.divide(turn, step, out=np.ones_like(turn), where=step > 0.0)).astype(np.int64)
+    pieces = np.maximum(pieces, 1)
+    segment = np.repeat(np.arange(len(turn)), pieces)
+    index = np.arange(len(segment)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    distance = lengths(curve)[segment] * index / pieces[segment]
+    points, _ = evaluate(curve, segment, distance)
+    points[index == 0] = curve.starts
+    if not curve.closed:
+        points = np.concatenate([points, curve.points[-1:]])
+        segment = np.append(segment, len(turn) - 1)
+    return points, segment
+
+
+def bounds(curve: Curve) -> tuple[float, float, float, float]:
+    """The smallest x, smallest y, largest x and largest y of the curve, m, arcs included exactly."""
+    low, high = curve.points.min(axis=0), curve.points.max(axis=0)
+    arcs = np.flatnonzero(curve.bulges)
+    if len(arcs):
+        start, end = (heading[arcs] for heading in headings(curve))
+        curvature = curvatures(curve)[arcs]
+        # The direction is a multiple of a quarter turn where x or y is extreme.
+        first = np.ceil(np.minimum(start, end) / (np.pi / 2.0))
+        for quarter in range(5):
+            heading = (first + quarter) * np.pi / 2.0
+            inside = heading <= np.maximum(start, end)
+            distance = np.divide(heading - start, curvature, out=np.zeros_like(curvature), where=curvature != 0.0)
+            points, _ = advance(curve.starts[arcs], start, curvature, np.where(inside, distance, 0.0))
+            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def nearest(curve: Curve, point: Array) -> tuple[int, float, float]:
+    """The place on the curve that is nearest to ``point``, (2,) m.
+
+    Returns:
+        the segment, the distance m from its start, and how far ``point`` is from there, m.
+    """
+    start_heading, _ = headings(curve)
+    curvature, reach = curvatures(curve), lengths(curve)
+    arm = point - curve.starts
+    tangent = np.stack([np.cos(start_heading), np.sin(start_heading)], axis=1)
+    along = np.sum(arm * tangent, axis=1)
+    across = tangent[:, 0] * arm[:, 1] - tangent[:, 1] * arm[:, 0]
+    # On an arc the nearest point lies at the angle of the point about the centre: tan = k along / (1 - k across).
+    angle = np.arctan2(curvature * along, 1.0 - curvature * across)
+    angle = np.where(angle * np.sign(curvature) < 0.0, angle + 2.0 * np.pi * np.sign(curvature), angle)
+    on_arc = np.divide(angle, curvature, out=np.zeros_like(curvature), where=curvature != 0.0)
+    inner = np.clip(np.where(curvature == 0.0, along, on_arc), 0.0, reach)
+    best = np.inf
+    found = (0, 0.0)
+    for distance in (inner, np.zeros_like(reach), reach):
+        places, _ = advance(curve.starts, start_heading, curvature, distance)
+        gap = np.hypot(*(places - point).T)
+        segment = int(np.argmin(gap))
+        if gap[segment] < best:
+            best, found = float(gap[segment]), (segment, float(distance[segment]))
+    return found[0], found[1], best
+
+
+def start_at(curve: Curve, segment: int, distance: float) -> Curve:
+    """A closed curve that begins ``distance`` m into ``segment`` and runs the same line.
+
+    A start within 1 nm of a vertex becomes that vertex.
+    """
+    reach = float(lengths(curve)[segment])
+    if distance <= 1e-9 or reach - distance <= 1e-9:
+        first = segment if distance <= 1e-9 else (segment + 1) % len(curve.points)
+        return replace(curve, points=np.roll(curve.points, -first, axis=0), bulges=np.roll(curve.bulges, -first))
+    place, _ = evaluate(curve, np.array([segment]), np.array([distance]))
+    quarter = np.arctan(curve.bulges[segment])
+    share = distance / reach
+    points = np.concatenate([place, np.roll(curve.points, -(segment + 1), axis=0)])
+    rest = np.roll(curve.bulges, -segment)[1:]
+    bulges = np.concatenate([[np.tan(quarter * (1.0 - share))], rest, [np.tan(quarter * share)]])
+    return replace(curve, points=points, bulges=bulges)
