@@ -1,0 +1,1 @@
+"""The machine: its kinematics, its limits, and the file that describes it."""

@@ -1,0 +1,218 @@
+"""The kinematics of a rotary delta robot: position, velocity and acceleration, both ways, on arrays of poses.
+
+The notation is that of `deltacam.robot.arms`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from deltacam.errors import RobotError
+from deltacam.model import Array, BoolArray
+from deltacam.robot.arms import (
+    ROUNDING,
+    SINGULAR,
+    components,
+    forearm_vectors,
+    loop_constant,
+    rows,
+    seen_from_arms,
+    solve,
+    solve_drivable,
+)
+from deltacam.robot.dimensions import DeltaGeometry
+
+
+def inverse(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """The joint angles that bring the tool to ``points``, elbows outwards.
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the base frame, m, z < 0.
+
+    Returns:
+        (N, 3) rad, in -pi to pi.
+
+    Raises:
+        RobotError: a point is not finite, not below the base, or out of reach; says which, which arm, and by how much.
+        ValueError: the shape is not (N, 3).
+    """
+    arms = solve(geometry, points)
+    return np.arctan2(arms.sin, arms.cos)
+
+
+def forward(geometry: DeltaGeometry, angles: npt.ArrayLike) -> Array:
+    """The tool points at which joint ``angles`` hold the effector, the lower of the two solutions.
+
+    The tool is where three spheres of the forearm's length about the elbows meet: the centre of the circle through the
+    elbows, and from there down along the normal of their plane. It undoes `inverse` and nothing else: angles at which
+    an elbow would fold inwards are refused, because `inverse` never gives them.
+
+    Args:
+        geometry: the robot.
+        angles: (N, 3) rad.
+
+    Returns:
+        (N, 3) in the base frame, m, z < 0.
+
+    Raises:
+        RobotError: an angle is not finite, or the forearms do not meet below the base with the elbows outwards.
+        ValueError: the shape is not (N, 3).
+    """
+    q = rows(angles, "joint angles")
+    cos, sin = np.cos(q), np.sin(q)
+    elbows = _elbows(geometry, cos, sin)
+    points, meets = _lower_meeting_point(elbows, geometry.forearm)
+    x, _, z = seen_from_arms(geometry, points)
+    t = -(x * sin + z * cos)
+    _refuse_angles(meets, q, "the forearms do not meet")
+    _refuse_angles(points[:, 2] < 0.0, q, "the forearms meet above the base")
+    _refuse_angles(t.min(axis=1) >= -SINGULAR * geometry.forearm, q, "an elbow is folded inwards")
+    return points
+
+
+def inverse_jacobian(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """The matrices that turn a tool velocity into joint speeds: row i is S_i / (S_i.b_i).
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the base frame, m.
+
+    Returns:
+        (N, 3, 3) rad/m; ``[n, i]`` is the row of joint i.
+
+    Raises:
+        RobotError: as `inverse`, and where an arm is at the edge of its reach.
+        ValueError: the shape is not (N, 3).
+    """
+    arms = solve_drivable(geometry, points)
+    return forearm_vectors(geometry, arms) / (geometry.upper_arm * arms.t)[:, :, np.newaxis]
+
+
+def joint_curvatures(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """The second derivatives of the joint angles by the tool's position: qdd_i = row_i . a + v.H_i v.
+
+    H_i = ((1 - b g^T)^T (1 - b g^T) - (S.db/dq) g g^T) / (S.b) with g the row of `inverse_jacobian`.
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the base frame, m.
+
+    Returns:
+        (N, 3, 3, 3) rad/m^2; ``[n, i]`` is the symmetric matrix of joint i.
+
+    Raises:
+        RobotError: as `inverse_jacobian`.
+        ValueError: the shape is not (N, 3).
+    """
+    arms = solve_drivable(geometry, points)
+    La, drive = geometry.upper_arm, geometry.upper_arm * arms.t
+    g = forearm_vectors(geometry, arms) / drive[:, :, np.newaxis]
+    cos, sin = np.cos(geometry.azimuths), np.sin(geometry.azimuths)
+    b = -La * np.stack((arms.sin * cos, arms.sin * sin, arms.cos), axis=-1)
+    moved = np.eye(3) - b[..., :, np.newaxis] * g[..., np.newaxis, :]
+    turned = (La * (La - arms.k))[..., np.newaxis, np.newaxis] * (g[..., :, np.newaxis] * g[..., np.newaxis, :])
+    return np.asarray((np.swapaxes(moved, -1, -2) @ moved - turned) / drive[..., np.newaxis, np.newaxis])
+
+
+def path_derivatives(
+    geometry: DeltaGeometry, p: npt.ArrayLike, dp: npt.ArrayLike, ddp: npt.ArrayLike
+) -> tuple[Array, Array, Array]:
+    """Joint angles along a path and their first two derivatives by the path's parameter, in closed form.
+
+    From |S_i|^2 = Lb^2 differentiated twice: S.b q' = S.p' and
+    S.b q'' = |p' - b q'|^2 + S.p'' - (S.db/dq) q'^2.
+
+    Args:
+        geometry: the robot.
+        p: points of the path, (N, 3) m.
+        dp: dp/ds, (N, 3).
+        ddp: d2p/ds2, (N, 3).
+
+    Returns:
+        q (N, 3) rad, dq/ds (N, 3), d2q/ds2 (N, 3). With time as the parameter: speed and acceleration.
+
+    Raises:
+        RobotError: as `inverse_jacobian`, or a derivative is not finite.
+        ValueError: a shape is not (N, 3), or the shapes differ.
+    """
+    arms = solve_drivable(geometry, p)
+    first, second = rows(dp, "first derivatives"), rows(ddp, "second derivatives")
+    if not len(first) == len(second) == len(arms.t):
+        raise ValueError(f"{len(arms.t)} points, {len(first)} first and {len(second)} second derivatives")
+    La = geometry.upper_arm
+    drive = La * arms.t
+    sx, sz = arms.x - La * arms.cos, arms.z + La * arms.sin
+    dx, dy, dz = components(geometry, first)
+    ddx, ddy, ddz = components(geometry, second)
+    dq = (sx * dx + arms.y * dy + sz * dz) / drive
+    swing = (dx + La * arms.sin * dq) ** 2 + dy**2 + (dz + La * arms.cos * dq) ** 2
+    ddq = (swing + sx * ddx + arms.y * ddy + sz * ddz - La * (La - arms.k) * dq**2) / drive
+    return np.arctan2(arms.sin, arms.cos), dq, ddq
+
+
+def reach_margin(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """How far every arm is from the edge of its reach: (sqrt(D) - |k|) / La, smooth, negative out of reach.
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the base frame, m; they may be out of reach.
+
+    Returns:
+        (N, 3), no unit; a small margin is close to the distance from the edge as a part of the upper arm.
+
+    Raises:
+        RobotError: a point is not finite.
+        ValueError: the shape is not (N, 3).
+    """
+    x, y, z = seen_from_arms(geometry, rows(points, "points"))
+    return (np.hypot(x, z) - np.abs(loop_constant(geometry, x, y, z))) / geometry.upper_arm
+
+
+def forearm_directions(geometry: DeltaGeometry, points: npt.ArrayLike) -> tuple[Array, Array]:
+    """The unit vectors of the forearms, elbow to effector, and t / Lb, which is cos(S_i, b_i).
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the base frame, m.
+
+    Returns:
+        (N, 3, 3), ``[n, i]`` is the direction of forearm i; (N, 3).
+
+    Raises:
+        RobotError: as `inverse`.
+        ValueError: the shape is not (N, 3).
+    """
+    arms = solve(geometry, points)
+    return forearm_vectors(geometry, arms) / geometry.forearm, arms.t / geometry.forearm
+
+
+def _lower_meeting_point(centres: Array, radius: float) -> tuple[Array, BoolArray]:
+    """The lower point at ``radius`` from three ``centres`` (N, 3, 3), and whether there is one: (N, 3), (N,)."""
+    a, b = centres[:, 1] - centres[:, 0], centres[:, 2] - centres[:, 0]
+    normal = np.cross(a, b)
+    area = np.einsum("ij,ij->i", normal, normal)
+    plane = (area > (ROUNDING * radius**2) ** 2) & (normal[:, 2] ** 2 > ROUNDING * area)
+    area = np.where(plane, area, 1.0)
+    weighted = np.einsum("ij,ij->i", a, a)[:, np.newaxis] * b - np.einsum("ij,ij->i", b, b)[:, np.newaxis] * a
+    to_centre = np.cross(weighted, normal) / (2.0 * area)[:, np.newaxis]
+    square = radius**2 - np.einsum("ij,ij->i", to_centre, to_centre)
+    down = -np.sign(normal[:, 2]) * np.sqrt(np.maximum(square, 0.0) / area)
+    return centres[:, 0] + to_centre + down[:, np.newaxis] * normal, plane & (square >= -ROUNDING * radius**2)
+
+
+def _refuse_angles(good: BoolArray, angles: Array, why: str) -> None:
+    if not good.all():
+        first = int(np.argmin(good))
+        degrees = ", ".join(f"{angle:.4f}" for angle in np.degrees(angles[first]))
+        what = f"{len(good) - good.sum()} of {len(good)} poses are impossible: {why}"
+        raise RobotError(f"{what} at ({degrees}) degrees", where=f"pose {first}")
+
+
+def _elbows(geometry: DeltaGeometry, cos: Array, sin: Array) -> Array:
+    """The elbows, moved inwards by the effector's radius: (N, 3, 3), ``[n, i]`` is C_i."""
+    out = geometry.offset + geometry.upper_arm * cos
+    return np.stack(
+        (out * np.cos(geometry.azimuths), out * np.sin(geometry.azimuths), -geometry.upper_arm * sin), axis=-1
+    )

@@ -1,0 +1,74 @@
+"""How well a pose passes on force and motion: pressure angles, forearm swing, condition number."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from deltacam.model import Array
+from deltacam.robot.dimensions import DeltaGeometry
+from deltacam.robot.kinematics import forearm_directions, inverse_jacobian
+
+
+def pressure_angles(geometry: DeltaGeometry, points: npt.ArrayLike) -> tuple[Array, Array]:
+    """The angles between the forces in the forearms and the motions that they cause; 90 degrees is a singularity.
+
+    mu1 is the angle between forearm i and the motion of its elbow: towards 90 degrees the joint no longer moves the
+    tool. mu2 is the angle between forearm i and the normal of the plane of the other two, along which the tool moves
+    when only joint i turns: towards 90 degrees the tool gains a freedom that no joint holds.
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the base frame, m.
+
+    Returns:
+        mu1 (N, 3) and mu2 (N, 3), rad, in 0 to pi/2.
+
+    Raises:
+        RobotError: a point is not finite or out of reach.
+        ValueError: the shape is not (N, 3).
+    """
+    forearms, along = forearm_directions(geometry, points)
+    normals = np.cross(forearms[:, [1, 2, 0]], forearms[:, [2, 0, 1]])
+    lengths = np.linalg.norm(normals, axis=2)
+    volume = np.abs(np.einsum("nij,nij->ni", forearms, normals))
+    across = np.divide(volume, lengths, out=np.zeros_like(volume), where=lengths > 0.0)
+    return np.arccos(np.minimum(along, 1.0)), np.arccos(np.minimum(across, 1.0))
+
+
+def forearm_swing(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """How far every forearm leans out of the plane of its arm, which is what its ball joints must allow.
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the base frame, m.
+
+    Returns:
+        (N, 3) rad, in 0 to pi/2.
+
+    Raises:
+        RobotError: a point is not finite or out of reach.
+        ValueError: the shape is not (N, 3).
+    """
+    forearms, _ = forearm_directions(geometry, points)
+    cos, sin = np.cos(geometry.azimuths), np.sin(geometry.azimuths)
+    aside = np.abs(forearms[:, :, 1] * cos - forearms[:, :, 0] * sin)
+    return np.arcsin(np.minimum(aside, 1.0))
+
+
+def inverse_condition(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """The smallest over the largest singular value of the Jacobian: 1 is isotropic, 0 is singular.
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the base frame, m.
+
+    Returns:
+        (N,), in 0 to 1.
+
+    Raises:
+        RobotError: a point is not finite, out of reach, or at the edge of an arm's reach.
+        ValueError: the shape is not (N, 3).
+    """
+    values = np.linalg.svd(inverse_jacobian(geometry, points), compute_uv=False)
+    return np.asarray(values[:, -1] / values[:, 0])
