@@ -1,0 +1,1 @@
+"""The joint-setpoint program, and the files that hold it."""

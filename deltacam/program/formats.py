@@ -1,0 +1,82 @@
+"""The table of formats that hold a whole program, and reading and writing by a file's name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO, Final, Protocol
+
+from deltacam.errors import ProgramError
+from deltacam.program import csv
+from deltacam.program.atomic import replace_when_done
+from deltacam.program.program import Program
+
+
+class _Read(Protocol):
+    def __call__(self, stream: BinaryIO, *, name: str) -> Program: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One way to keep a program in a file.
+
+    Attributes:
+        suffix: how the names of its files end; the last part alone is enough for reading.
+        write: a program to a seekable binary stream.
+        read: a program from a binary stream; ``name`` is for messages.
+    """
+
+    suffix: str
+    write: Callable[[Program, BinaryIO], None]
+    read: _Read
+
+
+FORMATS: Final[dict[str, Format]] = {
+    "csv": Format(suffix=".program.csv", write=csv.write, read=csv.read),
+}
+"""By name. A new format is one line here; the round-trip tests take it up by themselves."""
+
+
+def format_of(path: Path) -> Format:
+    """The format that the name of ``path`` stands for.
+
+    Raises:
+        ProgramError: none does.
+    """
+    for known in FORMATS.values():
+        if path.name.lower().endswith(Path(known.suffix).suffix):
+            return known
+    endings = " or ".join(f"NAME{known.suffix}" for known in FORMATS.values())
+    raise ProgramError("the name is not that of a program file", where=str(path), hint=f"a program is called {endings}")
+
+
+def read_program(path: str | Path) -> Program:
+    """The program in the file at ``path``.
+
+    Returns:
+        the program; what is wrong with a damaged but readable file is in its ``integrity``.
+
+    Raises:
+        ProgramError: the file cannot be opened or interpreted.
+    """
+    path = Path(path)
+    known = format_of(path)
+    try:
+        with path.open("rb") as stream:
+            return known.read(stream, name=path.name)
+    except OSError as problem:
+        reason = (problem.strerror or str(problem)).lower()
+        raise ProgramError(f"the file cannot be read: {reason}", where=str(path)) from problem
+
+
+def write_program(program: Program, path: str | Path) -> None:
+    """Write ``program`` to ``path`` in the format that the name stands for, whole or not at all.
+
+    Raises:
+        ProgramError: the name stands for no format, the program cannot be written, or the operating system refuses.
+    """
+    path = Path(path)
+    known = format_of(path)
+    with replace_when_done(path) as temporary, temporary.open("wb") as stream:
+        known.write(program, stream)
