@@ -187,32 +187,47 @@ def bounds(curve: Curve) -> tuple[float, float, float, float]:
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
+def project(curve: Curve, segment: IntArray, points: Array) -> tuple[Array, Array]:
+    """The places on the given segments that are nearest to the given points, pair by pair.
+
+    Args:
+        curve: any.
+        segment: (N,) indices of segments.
+        points: (N, 2) m.
+
+    Returns:
+        the distance of each place from the start of its segment, (N,) m, and from its point, (N,) m.
+    """
+    heading = headings(curve)[0][segment]
+    curvature, reach = curvatures(curve)[segment], lengths(curve)[segment]
+    start = curve.starts[segment]
+    arm = points - start
+    cos, sin = np.cos(heading), np.sin(heading)
+    along = arm[:, 0] * cos + arm[:, 1] * sin
+    across = arm[:, 1] * cos - arm[:, 0] * sin
+    # On an arc the nearest point lies at the angle of the point about the centre: tan = k along / (1 - k across).
+    angle = np.arctan2(curvature * along, 1.0 - curvature * across) * np.sign(curvature)
+    bent = curvature != 0.0
+    on_arc = np.divide(np.mod(angle, 2.0 * np.pi), np.abs(curvature), out=np.zeros_like(curvature), where=bent)
+    best = np.clip(np.where(bent, on_arc, along), 0.0, reach)
+    best_gap = np.hypot(*(advance(start, heading, curvature, best)[0] - points).T)
+    for end in (np.zeros_like(reach), reach):
+        gap = np.hypot(*(advance(start, heading, curvature, end)[0] - points).T)
+        best = np.where(gap < best_gap, end, best)
+        best_gap = np.minimum(gap, best_gap)
+    return best, best_gap
+
+
 def nearest(curve: Curve, point: Array) -> tuple[int, float, float]:
     """The place on the curve that is nearest to ``point``, (2,) m.
 
     Returns:
         the segment, the distance m from its start, and how far ``point`` is from there, m.
     """
-    start_heading, _ = headings(curve)
-    curvature, reach = curvatures(curve), lengths(curve)
-    arm = point - curve.starts
-    tangent = np.stack([np.cos(start_heading), np.sin(start_heading)], axis=1)
-    along = np.sum(arm * tangent, axis=1)
-    across = tangent[:, 0] * arm[:, 1] - tangent[:, 1] * arm[:, 0]
-    # On an arc the nearest point lies at the angle of the point about the centre: tan = k along / (1 - k across).
-    angle = np.arctan2(curvature * along, 1.0 - curvature * across)
-    angle = np.where(angle * np.sign(curvature) < 0.0, angle + 2.0 * np.pi * np.sign(curvature), angle)
-    on_arc = np.divide(angle, curvature, out=np.zeros_like(curvature), where=curvature != 0.0)
-    inner = np.clip(np.where(curvature == 0.0, along, on_arc), 0.0, reach)
-    best = np.inf
-    found = (0, 0.0)
-    for distance in (inner, np.zeros_like(reach), reach):
-        places, _ = advance(curve.starts, start_heading, curvature, distance)
-        gap = np.hypot(*(places - point).T)
-        segment = int(np.argmin(gap))
-        if gap[segment] < best:
-            best, found = float(gap[segment]), (segment, float(distance[segment]))
-    return found[0], found[1], best
+    every = np.arange(len(curve.bulges))
+    distance, gap = project(curve, every, np.broadcast_to(point, (len(every), 2)))
+    segment = int(np.argmin(gap))
+    return segment, float(distance[segment]), float(gap[segment])
 
 
 def start_at(curve: Curve, segment: int, distance: float) -> Curve:

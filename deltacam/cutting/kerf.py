@@ -1,0 +1,141 @@
+"""The path of the beam's centre: half a kerf beside the drawn contour, as lines and arcs.
+
+Shapely's ``buffer`` of the flattened contour decides the topology: what is left of the contour, and in how many pieces.
+Each edge of its result is then traced back to the line or arc of the drawing, or to the corner, that it is the offset
+of, and the exact offset elements are joined where they meet. So the path keeps the tangency and the radii of the
+drawing, and no error of flattening is left in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import shapely
+
+from deltacam.cutting.trace import Source, trace_ring
+from deltacam.errors import InfeasibleError
+from deltacam.geometry import curve as curves
+from deltacam.model import Array, Contour, Curve, Cut, Finding
+from deltacam.units import to_mm
+
+FLATTENING: Final = 1e-6
+"""Sagitta, m, at which contours are flattened and rounds approximated for shapely."""
+
+SMALLEST_RING: Final = 2e-5
+"""Perimeter, m, below which what a kerf leaves of a contour counts as nothing."""
+
+CLEARANCE_SLACK: Final = 3e-6
+"""How far, m, a cut may run into another contour before it is refused: above the errors of reading and flattening."""
+
+
+@dataclass(frozen=True, slots=True)
+class KerfResult:
+    """The cuts of a drawing, in the order of its contours, and what a person should know about them."""
+
+    cuts: tuple[Cut, ...]
+    findings: tuple[Finding, ...]
+
+
+def offset(contours: Sequence[Contour], *, kerf: float) -> KerfResult:
+    """Shift every contour by half the kerf to its waste side, so that the part keeps its drawn size.
+
+    The waste is outside an outline and inside a hole. Convex corners are rounded about the drawn corner, as the exact
+    offset is.
+
+    Args:
+        contours: closed, counter-clockwise, m, none crossing another.
+        kerf: width of the cut, m, >= 0.
+
+    Returns:
+        one cut per contour, or several where the kerf splits it, which is reported.
+
+    Raises:
+        InfeasibleError: the kerf swallows a contour, or the cut of one runs into another.
+    """
+    results = [_offset_one(contour, kerf) for contour in contours]
+    cuts = tuple(cut for result in results for cut in result.cuts)
+    _refuse_collisions(contours, cuts, kerf)
+    return KerfResult(cuts, tuple(finding for result in results for finding in result.findings))
+
+
+def _offset_one(contour: Contour, kerf: float) -> KerfResult:
+    if kerf == 0.0:
+        return KerfResult((_cut(contour, contour.curve),), ())
+    shift = -kerf / 2.0 if contour.is_hole else kerf / 2.0
+    points, segment = curves.flatten(contour.curve, FLATTENING)
+    region = shapely.Polygon(points).buffer(shift, quad_segs=_quad_segments(kerf / 2.0))
+    parts = [shapely.geometry.polygon.orient(part) for part in getattr(region, "geoms", [region])]
+    rings = [ring for part in parts for ring in (part.exterior, *part.interiors) if ring.length > SMALLEST_RING]
+    if not rings:
+        raise InfeasibleError(
+            f"a kerf of {to_mm(kerf):.3g} mm swallows this contour {_size(contour.curve)}",
+            where=f"{contour.where} at {_place(contour.curve.points.mean(axis=0))}",
+            hint="use a narrower kerf (--kerf), or take the contour out of the drawing",
+        )
+    source = Source(contour.curve, points, segment, shift)
+    traced = [trace_ring(source, shapely.get_coordinates(ring)[:-1]) for ring in rings]
+    return KerfResult(tuple(_cut(contour, ring) for ring in traced), _pieces_finding(contour, rings, kerf))
+
+
+def _quad_segments(radius: float) -> int:
+    """How many chords a quarter turn of ``radius`` m needs to stay within a third of ``FLATTENING``."""
+    step = 2.0 * np.arccos(max(0.0, 1.0 - FLATTENING / (3.0 * radius)))
+    return max(8, int(np.ceil(0.5 * np.pi / step)))
+
+
+def _cut(contour: Contour, curve: Curve) -> Cut:
+    return Cut(contour=contour.number, layer=contour.layer, handles=contour.handles, curve=curve)
+
+
+def _pieces_finding(contour: Contour, rings: Sequence[shapely.LinearRing], kerf: float) -> tuple[Finding, ...]:
+    if len(rings) == 1:
+        return ()
+    places = ", ".join(_place(shapely.get_coordinates(ring.centroid)[0]) for ring in rings)
+    return (
+        Finding(
+            what=f"a kerf of {to_mm(kerf):.3g} mm does not fit through the contour everywhere: it splits into "
+            f"{len(rings)} cuts about {places}, and the narrow places between them stay uncut",
+            where=contour.where,
+            hint="use a narrower kerf (--kerf), or widen the narrow places of the drawing",
+        ),
+    )
+
+
+def _refuse_collisions(contours: Sequence[Contour], cuts: Sequence[Cut], kerf: float) -> None:
+    """Refuse cuts that come nearer than half a kerf to a contour that is not theirs: they would cut into it."""
+    clearance = kerf / 2.0 - CLEARANCE_SLACK
+    if clearance <= 0.0 or len(contours) < 2:
+        return
+    drawn = np.array([_ring(contour.curve) for contour in contours])
+    paths = np.array([_ring(cut.curve) for cut in cuts])
+    path, other = shapely.STRtree(drawn).query(paths, predicate="dwithin", distance=clearance)
+    numbers = np.array([contour.number for contour in contours])
+    hit = numbers[other] != np.array([cut.contour for cut in cuts])[path]
+    if not hit.any():
+        return
+    pairs = sorted({(min(a, b), max(a, b)) for a, b in zip(path[hit].tolist(), other[hit].tolist(), strict=True)})
+    first = int(np.flatnonzero(hit)[0])
+    cut, contour = cuts[path[first]], contours[other[first]]
+    meeting = shapely.get_coordinates(shapely.shortest_line(paths[path[first]], drawn[other[first]]))[1]
+    more = f" (and {len(pairs) - 1} more)" if len(pairs) > 1 else ""
+    raise InfeasibleError(
+        f"a kerf of {to_mm(kerf):.3g} mm is wider than the gap to {contour.where}, which would be cut into{more}",
+        where=f"contour {cut.contour} (layer {cut.layer}, #{cut.handles[0]}) at {_place(meeting)}",
+        hint="use a narrower kerf (--kerf), or move the contours apart; lines shared by two parts must be drawn once",
+    )
+
+
+def _ring(curve: Curve) -> shapely.LinearRing:
+    return shapely.LinearRing(curves.flatten(curve, FLATTENING)[0])
+
+
+def _place(point: Array) -> str:
+    return f"({to_mm(point[0]):.3f}, {to_mm(point[1]):.3f}) mm"
+
+
+def _size(curve: Curve) -> str:
+    left, bottom, right, top = curves.bounds(curve)
+    return f"of {to_mm(right - left):.3g} x {to_mm(top - bottom):.3g} mm"

@@ -1,0 +1,80 @@
+"""Where the drawing lies on the sheet, and whether it fits there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from deltacam.errors import InfeasibleError
+from deltacam.geometry import curve as curves
+from deltacam.model import Array, Contour, Cut, Placement
+from deltacam.units import to_mm
+
+if TYPE_CHECKING:
+    from deltacam.robot.robot import Robot
+
+_FLATTENING: Final = 1e-6
+_OUTSIDE: Final = 1e-7
+
+
+def bounding_box(contours: Sequence[Contour] | Sequence[Cut]) -> Array:
+    """The smallest x and y, and the largest, of all the curves, (2, 2) m."""
+    boxes = np.array([curves.bounds(contour.curve) for contour in contours])
+    return np.array([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
+
+
+def place(contours: Sequence[Contour], *, robot: Robot, at: tuple[float, float], rotation: float) -> Placement:
+    """Put the centre of the drawing's bounding box at ``at`` and turn the drawing about it.
+
+    Args:
+        contours: what is cut, sheet frame, m.
+        robot: gives the height of the sheet.
+        at: base frame, m.
+        rotation: rad, counter-clockwise.
+    """
+    centre = bounding_box(contours).mean(axis=0)
+    cos, sin = np.cos(rotation), np.sin(rotation)
+    turned = np.array([cos * centre[0] - sin * centre[1], sin * centre[0] + cos * centre[1]])
+    x, y = np.asarray(at) - turned
+    return Placement(x=float(x), y=float(y), rotation=rotation, z=robot.workspace.sheet_z)
+
+
+def refuse_outside(cuts: Sequence[Cut], *, robot: Robot, placement: Placement, unit: str) -> None:
+    """Refuse cuts that leave the sheet.
+
+    Args:
+        cuts: in the sheet frame, m.
+        robot: gives the sheet.
+        placement: of the drawing.
+        unit: what the drawing's numbers were taken as, for the message.
+
+    Raises:
+        InfeasibleError: the worst contour is outside; says by how much.
+    """
+    excess = []
+    for cut in cuts:
+        curve = curves.transform(cut.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
+        excess.append(float(robot.workspace.excess(curves.flatten(curve, _FLATTENING)[0]).max()))
+    worst = int(np.argmax(excess))
+    if excess[worst] <= _OUTSIDE:
+        return
+    cut = cuts[worst]
+    count = sum(one > _OUTSIDE for one in excess)
+    low, high = bounding_box(cuts)
+    width, depth = to_mm(high[0] - low[0]), to_mm(high[1] - low[1])
+    raise InfeasibleError(
+        f"the cut leaves the sheet of robot {robot.name} ({_sheet(robot)}) by {to_mm(excess[worst]):.3f} mm"
+        + (f"; so do {count - 1} other contours" if count > 1 else ""),
+        where=f"contour {cut.contour} (layer {cut.layer}, #{cut.handles[0]})",
+        hint=f"with its kerf the part is {width:.1f} x {depth:.1f} mm, one unit of the drawing taken as {unit}: "
+        "move it (--at), turn it (--rotate), take a larger robot (--robot), or check the unit (--units)",
+    )
+
+
+def _sheet(robot: Robot) -> str:
+    area = robot.workspace
+    if area.radius is not None:
+        return f"a disc of {to_mm(2.0 * area.radius):.0f} mm"
+    return f"{to_mm(area.width or 0.0):.0f} x {to_mm(area.depth or 0.0):.0f} mm"

@@ -1,0 +1,198 @@
+"""Turns the polyline that ``buffer`` gives back into the exact offset lines and arcs it stands for.
+
+Every edge of the polyline gets a label: 2k where it is the offset of segment k of the drawn contour, 2k + 1 where it
+is the round about the corner at the end of segment k. So labels count up along the contour, and two neighbouring
+labels meet in a point that is known exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+import shapely
+
+from deltacam.geometry import curve as curves
+from deltacam.geometry.element import Element, meeting_points, shifted, turn_between
+from deltacam.model import Array, Curve, IntArray
+
+FIT: Final = 2e-6
+"""Largest distance, m, of the traced path from the polyline that it replaces."""
+
+_SAME_POINT: Final = 5e-7
+_SEARCH: Final = 2e-5
+_SHORTEST: Final = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A drawn contour, and how it was flattened and shifted.
+
+    Attributes:
+        curve: closed, counter-clockwise, m.
+        flat: (K, 2) m, its flattened points.
+        segment: (K,) the segment of each flattened point.
+        shift: m, positive outwards.
+    """
+
+    curve: Curve
+    flat: Array
+    segment: IntArray
+    shift: float
+
+    @cached_property
+    def chords(self) -> shapely.STRtree:
+        """The index of the flattened chords; chord i starts at flattened point i."""
+        return shapely.STRtree(_edges(self.flat))
+
+    @cached_property
+    def headings(self) -> tuple[Array, Array]:
+        """The direction at the start and at the end of each segment, rad."""
+        return curves.headings(self.curve)
+
+    @cached_property
+    def rounds(self) -> Array:
+        """The length of the round about the end of each segment, (M,) m; not positive where the corner is hollow."""
+        return np.roll(curves.corner_angles(self.curve), -1) * self.shift
+
+    @cached_property
+    def curvature(self) -> Array:
+        """The curvature of each segment, (M,) 1/m."""
+        return curves.curvatures(self.curve)
+
+    def element(self, label: int) -> Element:
+        """The offset line or circle that a label stands for."""
+        k, corner = divmod(label, 2)
+        if corner:
+            return Element(anchor=self.curve.ends[k], radius=self.shift)
+        return shifted(self.curve.starts[k], float(self.headings[0][k]), float(self.curvature[k]), self.shift)
+
+    def offset_end(self, k: int) -> Array:
+        """Where the offset of segment k ends, (2,) m."""
+        return self._beside(self.curve.ends[k], float(self.headings[1][k]))
+
+    def offset_start(self, k: int) -> Array:
+        """Where the offset of segment k starts, (2,) m."""
+        return self._beside(self.curve.starts[k], float(self.headings[0][k]))
+
+    def _beside(self, point: Array, heading: float) -> Array:
+        return np.asarray(point + self.shift * np.array([np.sin(heading), -np.cos(heading)]))
+
+
+def trace_ring(source: Source, ring: Array) -> Curve:
+    """The offset of a contour along ``ring`` as lines and arcs, counter-clockwise.
+
+    Args:
+        source: the drawn contour.
+        ring: (K, 2) m, one ring of the buffered contour, the buffered region to its left, first point not repeated.
+
+    Returns:
+        a closed curve within ``FIT`` of ``ring``; where tracing does not get there, the lines of ``ring`` themselves.
+    """
+    labels, first = _runs(source, _labels(source, ring))
+    traced = _assemble(source, labels, first, ring) if len(labels) > 1 else None
+    if traced is None or not _matches(traced, ring):
+        traced = curves.polygon(ring)
+    return traced if curves.signed_area(traced) > 0.0 else curves.reverse(traced)
+
+
+def _edges(points: Array) -> Array:
+    """The edges of a closed polyline as an array of line strings, (K,)."""
+    return np.asarray(shapely.linestrings(np.stack([points, np.roll(points, -1, axis=0)], axis=1)))
+
+
+def _labels(source: Source, ring: Array) -> IntArray:
+    """The label of every edge of ``ring``, by the place on the contour that is nearest to the edge's middle."""
+    middle = 0.5 * (ring + np.roll(ring, -1, axis=0))
+    chord = source.chords.query_nearest(shapely.points(middle), all_matches=False)[1]
+    count = len(source.curve.bulges)
+    choices = (source.segment[chord][None, :] + np.array([[0], [-1], [1]])) % count
+    places = [curves.project(source.curve, choice, middle) for choice in choices]
+    best = np.argmin([gap for _, gap in places], axis=0)
+    every = np.arange(len(middle))
+    k = choices[best, every]
+    distance = np.array([place for place, _ in places])[best, every]
+    after = (distance >= curves.lengths(source.curve)[k]) & (source.rounds[k] > 0.0)
+    before = (distance <= 0.0) & (source.rounds[(k - 1) % count] > 0.0)
+    return np.asarray(np.where(after, 2 * k + 1, np.where(before, 2 * k - 1, 2 * k)) % (2 * count))
+
+
+def _runs(source: Source, labels: IntArray) -> tuple[list[int], list[int]]:
+    """The labels without repeats, and for each the first vertex of the ring that carries it.
+
+    Rounds shorter than half a micrometre are left out, and a round that ``buffer`` was too coarse to show is put in.
+    """
+    count = len(source.curve.bulges)
+    tiny = (labels % 2 == 1) & (source.rounds[labels // 2] < _SAME_POINT)
+    kept = np.flatnonzero(~tiny)
+    if len(kept) == 0:
+        return [], []
+    changed = labels[kept] != np.roll(labels[kept], 1)
+    starts = kept[changed]
+    runs: list[int] = []
+    first: list[int] = []
+    for vertex, following in zip(starts.tolist(), np.roll(starts, -1).tolist(), strict=True):
+        label = int(labels[vertex])
+        runs.append(label)
+        first.append(vertex)
+        k = label // 2
+        adjacent = label % 2 == 0 and int(labels[following]) == (label + 2) % (2 * count)
+        if adjacent and source.rounds[k] >= _SAME_POINT:
+            runs.append(label + 1)
+            first.append(following)
+    return runs, first
+
+
+def _join(source: Source, label: int, following: int, about: Array) -> Array:
+    """The point where the element of ``label`` ends and that of ``following`` begins; near ``about``."""
+    count = len(source.curve.bulges)
+    if following == (label + 1) % (2 * count):
+        return source.offset_start(following // 2) if label % 2 else source.offset_end(label // 2)
+    if label % 2 == 0 and following == (label + 2) % (2 * count):
+        end, start = source.offset_end(label // 2), source.offset_start(following // 2)
+        if np.hypot(*(end - start)) <= _SAME_POINT:
+            return np.asarray(0.5 * (end + start))
+    places = meeting_points(source.element(label), source.element(following))
+    gaps = np.hypot(*(places - about).T)
+    if len(places) and gaps.min() <= _SEARCH:
+        return np.asarray(places[np.argmin(gaps)])
+    return about
+
+
+def _assemble(source: Source, labels: list[int], first: list[int], ring: Array) -> Curve | None:
+    """The closed curve of the elements that the labels stand for; None where that is no curve."""
+    count = len(labels)
+    joins = [_join(source, labels[i - 1], labels[i], ring[first[i]]) for i in range(count)]
+    edge = np.hypot(*(np.roll(ring, -1, axis=0) - ring).T)
+    travelled = np.concatenate([[0.0], np.cumsum(edge)])
+    points: list[Array] = []
+    bulges: list[float] = []
+    for i, label in enumerate(labels):
+        start, end = joins[i], joins[(i + 1) % count]
+        element = source.element(label)
+        turn = 0.0
+        if abs(element.radius) > _SHORTEST:
+            run = travelled[first[(i + 1) % count]] - travelled[first[i]]
+            turn = turn_between(element, start, end, float(run % travelled[-1]) / element.radius)
+        if np.hypot(*(end - start)) <= _SHORTEST and abs(turn) < np.pi:
+            continue
+        halves = 2 if abs(turn) > np.pi * 1.001 else 1
+        points.append(start)
+        if halves == 2:
+            arm = start - element.anchor
+            cos, sin = np.cos(turn / 2.0), np.sin(turn / 2.0)
+            points.append(element.anchor + np.array([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1]]))
+        bulges += [float(np.tan(turn / halves / 4.0))] * halves
+    return Curve(points=np.array(points), bulges=np.array(bulges)) if len(points) >= 2 else None
+
+
+def _matches(traced: Curve, ring: Array) -> bool:
+    """Whether the two run within ``FIT`` of each other, seen from both."""
+    flat, _ = curves.flatten(traced, FIT / 4.0)
+    there = shapely.STRtree(_edges(ring)).query_nearest(shapely.points(flat), return_distance=True, all_matches=False)[
+        1
+    ]
+    back = shapely.STRtree(_edges(flat)).query_nearest(shapely.points(ring), return_distance=True, all_matches=False)[1]
+    return bool(max(there.max(), back.max()) <= FIT)

@@ -1,0 +1,274 @@
+"""The order of the stages: from a drawing to a verified program and its files.
+
+This is the only place that knows the order. Stages say nothing and ask nothing; progress is told to a callback.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from deltacam.cutting import kerf, order, placement
+from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
+from deltacam.drawing.reader import read_drawing
+from deltacam.errors import ProgramError
+from deltacam.model import Cut, Drawing, Finding, Mode, Placement, Process, Report
+from deltacam.motion import setpoints
+from deltacam.program import csv
+from deltacam.program.atomic import replace_when_done, write_whole
+from deltacam.program.formats import read_program
+from deltacam.program.program import DrawingRef, Program
+from deltacam.robot.reader import load_robot
+from deltacam.robot.robot import Robot
+from deltacam.verification import html, report_json
+from deltacam.verification import verify as verification
+
+DEFAULT_ROBOT: Final = "delta-300"
+
+Progress = Callable[[str, int, int], None]
+"""Is told the stage, how much of it is done, and of how much."""
+
+
+def _silent(_stage: str, _done: int, _total: int) -> None:
+    """Tell nobody."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Planned:
+    """A program, and what the independent check of it found.
+
+    Attributes:
+        program: as it was read back from ``content``.
+        report: says whether it may be used.
+        drawing: what it was planned from.
+        content: the bytes of the program file.
+    """
+
+    program: Program
+    report: Report
+    drawing: Drawing
+    content: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """The files that planning a drawing writes into a folder."""
+
+    program: Path
+    report_json: Path
+    report_html: Path
+
+    @classmethod
+    def of(cls, drawing: str | Path, folder: str | Path) -> Outputs:
+        """The files for a drawing of that name."""
+        folder, stem = Path(folder), Path(drawing).stem
+        names = (f"{stem}.program.csv", f"{stem}.report.json", f"{stem}.report.html")
+        return cls(*(folder / name for name in names))
+
+    def clear(self) -> None:
+        """Remove what an earlier run left, so that a failed run leaves no program to be used by mistake.
+
+        Raises:
+            ProgramError: the operating system refuses.
+        """
+        for path in (self.program, self.report_json, self.report_html):
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as problem:
+                reason = (problem.strerror or str(problem)).lower()
+                hint = "choose another folder with -o, or get permission there"
+                raise ProgramError(
+                    f"the file of an earlier run cannot be removed: {reason}", where=str(path), hint=hint
+                ) from problem
+
+
+def plan(
+    drawing: str | Path,
+    *,
+    robot: Robot | str | Path = DEFAULT_ROBOT,
+    process: Process | str | Path = DEFAULT_PROCESS,
+    unit: str | None = None,
+    at: tuple[float, float] = (0.0, 0.0),
+    rotation: float = 0.0,
+    mode: Mode = Mode.CUT,
+    progress: Progress = _silent,
+) -> Planned:
+    """Plan a drawing and check the program independently.
+
+    Args:
+        drawing: path of a DXF file.
+        robot: a robot, a built-in name, or the path of a robot file.
+        process: a process, a built-in name, or the path of a process file.
+        unit: what the drawing's numbers are, where the file does not say or is wrong: "mm", "in", ...
+        at: where the centre of what is cut comes to lie, base frame, m.
+        rotation: of the drawing about that centre, rad, counter-clockwise.
+        mode: cut, the same motion with the laser off, or the bounding box with the laser off.
+        progress: is told what is going on.
+
+    Returns:
+        the program and its report; ``report.passed`` says whether the program may be used.
+
+    Raises:
+        DeltacamError: the drawing, robot or process must be changed; says what, where and how.
+    """
+    robot = robot if isinstance(robot, Robot) else load_robot(robot)
+    process = check_process(process if isinstance(process, Process) else load_process(process))
+    progress("read", 0, 1)
+    part = read_drawing(drawing, unit=unit)
+    program, findings = _program(part, robot, process, at, rotation, mode, progress)
+    progress("write", 0, 1)
+    content = _content(program)
+    program = csv.read(io.BytesIO(content), name=Outputs.of(drawing, ".").program.name)
+    progress("verify", 0, 1)
+    report = verification.verify(program, drawing=part)
+    report = replace(report, findings=(*report.findings, *findings))
+    progress("verify", 1, 1)
+    return Planned(program, report, part, content)
+
+
+def plan_to_folder(
+    drawing: str | Path, folder: str | Path, *, progress: Progress = _silent, **options: object
+) -> tuple[Planned, Outputs]:
+    """Plan a drawing and write its files: the reports always, the program only if every check passed.
+
+    Args:
+        drawing: path of a DXF file.
+        folder: where the files go; made where it is missing.
+        progress: is told what is going on.
+        **options: of ``plan``.
+
+    Raises:
+        DeltacamError: as ``plan``, or the folder cannot be written to. No program of an earlier run is left then.
+    """
+    outputs = Outputs.of(drawing, folder)
+    _make_folder(Path(folder))
+    outputs.clear()
+    planned = plan(drawing, progress=progress, **options)  # type: ignore[arg-type]
+    progress("report", 0, 1)
+    write_whole(outputs.report_json, report_json.to_json(planned.report).encode())
+    page = html.to_html(planned.report, planned.program, drawing=planned.drawing, title=Path(drawing).stem)
+    write_whole(outputs.report_html, page.encode())
+    if planned.report.passed:
+        with replace_when_done(outputs.program) as temporary:
+            temporary.write_bytes(planned.content)
+            if temporary.read_bytes() != planned.content:
+                raise ProgramError("the file system did not keep what was written", where=str(outputs.program))
+    progress("report", 1, 1)
+    return planned, outputs
+
+
+def verify(
+    program: Program | str | Path, *, drawing: str | Path | None = None, robot: Robot | str | Path | None = None
+) -> Report:
+    """Check a program against the robot it was made for, and against a drawing where one is given.
+
+    Args:
+        program: a program, or the path of a program file.
+        drawing: path of the DXF file that it should cut.
+        robot: the robot that it must be for, where that is not simply what the program says.
+
+    Raises:
+        DeltacamError: a file cannot be read at all; what is wrong with a readable program is in the report.
+    """
+    program = program if isinstance(program, Program) else read_program(program)
+    if robot is not None and not isinstance(robot, Robot):
+        robot = load_robot(robot)
+    part = None if drawing is None else read_drawing(drawing, metres_per_unit=program.drawing.metres_per_unit)
+    return verification.verify(program, drawing=part, robot=robot)
+
+
+def _program(
+    part: Drawing,
+    robot: Robot,
+    process: Process,
+    at: tuple[float, float],
+    rotation: float,
+    mode: Mode,
+    progress: Progress,
+) -> tuple[Program, tuple[Finding, ...]]:
+    """The program of a drawing, and what a person should know about it."""
+    where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
+    progress("kerf", 0, 1)
+    shifted = kerf.offset(part.contours, kerf=process.kerf)
+    placement.refuse_outside(shifted.cuts, robot=robot, placement=where, unit=part.unit)
+    if mode is Mode.FRAME:
+        moves = _frame(shifted.cuts, robot, process, where)
+    else:
+        moves = _cutting(part, shifted.cuts, robot, process, where, mode, progress)
+    ref = DrawingRef(file=part.file, sha256=part.sha256, metres_per_unit=part.metres_per_unit)
+    program = Program(
+        robot=robot,
+        placement=where,
+        process=process,
+        drawing=ref,
+        mode=mode,
+        blocks=moves.blocks,
+        q=moves.q,
+        power=moves.power,
+        block=moves.block,
+    )
+    return program, shifted.findings
+
+
+def _cutting(
+    part: Drawing,
+    cuts: tuple[Cut, ...],
+    robot: Robot,
+    process: Process,
+    where: Placement,
+    mode: Mode,
+    progress: Progress,
+) -> setpoints.Setpoints:
+    progress("order", 0, 1)
+    parents = {contour.number: contour.parent for contour in part.contours}
+    ordered = order.order(cuts, parents=parents, start=_to_sheet(robot.workspace.park, where))
+    return setpoints.plan_motion(
+        ordered,
+        robot=robot,
+        process=process,
+        placement=where,
+        drawing_error=part.conversion_error,
+        mode=mode,
+        progress=lambda done, total: progress("motion", done, total),
+    )
+
+
+def _frame(cuts: tuple[Cut, ...], robot: Robot, process: Process, where: Placement) -> setpoints.Setpoints:
+    (left, bottom), (right, top) = placement.bounding_box(cuts)
+    corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
+    return setpoints.plan_frame(corners, robot=robot, process=process, placement=where)
+
+
+def _to_sheet(place: tuple[float, float], where: Placement) -> tuple[float, float]:
+    x, y = place[0] - where.x, place[1] - where.y
+    cos, sin = np.cos(where.rotation), np.sin(where.rotation)
+    return float(cos * x + sin * y), float(cos * y - sin * x)
+
+
+def _content(program: Program) -> bytes:
+    stream = io.BytesIO()
+    csv.write(program, stream)
+    return stream.getvalue()
+
+
+def _make_folder(folder: Path) -> None:
+    """Make the folder where it is missing, and find out now whether it can be written to."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / f".deltacam-{os.getpid()}.tmp"
+        try:
+            probe.touch()
+        finally:
+            with suppress(OSError):
+                probe.unlink(missing_ok=True)
+    except OSError as problem:
+        reason = (problem.strerror or str(problem)).lower()
+        hint = "choose another folder with -o, or get permission there"
+        raise ProgramError(f"the folder cannot be written to: {reason}", where=str(folder), hint=hint) from problem
