@@ -66,7 +66,7 @@ def forward(geometry: DeltaGeometry, angles: npt.ArrayLike) -> Array:
     points, meets = _lower_meeting_point(elbows, geometry.forearm)
     x, _, z = seen_from_arms(geometry, points)
     t = -(x * sin + z * cos)
-    _refuse_angles(meets, q, "the forearms do not meet")
+    _refuse_angles(meets, q, "the forearms do not meet in one point")
     _refuse_angles(points[:, 2] < 0.0, q, "the forearms meet above the base")
     _refuse_angles(t.min(axis=1) >= -SINGULAR * geometry.forearm, q, "an elbow is folded inwards")
     return points

@@ -113,12 +113,12 @@ class Workspace:
         return np.array([self.width or 0.0, self.depth or 0.0]) / 2.0
 
     def _points(self, square: Array) -> Array:
-        """Points of the sheet for ``square`` (N, 2) in -1..1: half sides of a rectangle, radius and angle of a disc."""
+        """Points of the sheet for ``square`` (N, 2) in -1..1; for a disc, squares about the middle become rings."""
         if self.radius is None:
             xy = square * self._half_sides()
         else:
-            distance, angle = self.radius * (square[:, 0] + 1.0) / 2.0, np.pi * square[:, 1]
-            xy = np.stack((distance * np.cos(angle), distance * np.sin(angle)), axis=-1)
+            ring, length = np.abs(square).max(axis=1), np.hypot(square[:, 0], square[:, 1])
+            xy = square * (self.radius * ring / np.where(length > 0.0, length, 1.0))[:, np.newaxis]
         return np.column_stack((xy, np.full(len(xy), self.sheet_z)))
 
 
