@@ -80,6 +80,18 @@ def parse_speed(text: str) -> float:
     return value * metres_per(length) / _SECONDS_PER[time]
 
 
+def parse_angle(text: str) -> float:
+    """The angle in radians that ``text`` states; a bare number is degrees: ``90``, ``90deg``, ``1.57rad``.
+
+    Raises:
+        DeltacamError: not a finite number, or an unknown unit.
+    """
+    value, unit = _split(text, "angle", "90 or 1.5708rad")
+    if unit not in ("", "deg", "rad"):
+        raise DeltacamError(f"unknown unit of angle {unit!r}", hint="use deg or rad")
+    return value if unit == "rad" else math.radians(value)
+
+
 def _split(text: str, kind: str, example: str) -> tuple[float, str]:
     match = _NUMBER.fullmatch(text)
     value = float(match.group(1)) if match else math.nan

@@ -48,7 +48,7 @@ def shifted(start: Array, heading: float, curvature: float, shift: float) -> Ele
 
 
 def turn_between(element: Element, start: Array, end: Array, about: float) -> float:
-    """The signed angle from ``start`` to ``end`` about a circle; of those a full turn apart the nearest to ``about``."""
+    """The signed angle from ``start`` to ``end`` about a circle; of those a turn apart the nearest to ``about``."""
     before, after = start - element.anchor, end - element.anchor
     turn = float(np.arctan2(after[1], after[0]) - np.arctan2(before[1], before[0]))
     return turn + 2.0 * np.pi * round((about - turn) / (2.0 * np.pi))

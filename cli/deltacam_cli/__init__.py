@@ -1,0 +1,1 @@
+"""The command line of deltacam: parses, calls the library, shows. No maths."""

@@ -1,0 +1,132 @@
+"""The command ``deltacam`` and what its commands share: loading late, errors and exit codes."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+import traceback
+from typing import Any, Final, NoReturn
+
+import click
+
+from deltacam.errors import DeltacamError
+
+COMMANDS: Final = {
+    "plan": "Plan DRAWING and verify the program.",
+    "verify": "Verify PROGRAM, trusting nothing the planner said.",
+}
+"""The commands and their short help. A command ``x`` is ``deltacam_cli.x:command``; it is imported when it is used."""
+
+EXIT_FAILED: Final = 1
+EXIT_INPUT: Final = 2
+EXIT_FAULT: Final = 3
+EXIT_INTERRUPTED: Final = 130
+
+
+class LateGroup(click.Group):
+    """A group whose commands are imported when they are used, so that ``--help`` is instant."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of the commands."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """The command of that name, imported."""
+        if name not in COMMANDS:
+            return None
+        command: click.Command = importlib.import_module(f"deltacam_cli.{name}").command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands without importing them."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that the first argument names; a drawing in its place is answered with what to type."""
+        if args and args[0].lower().endswith(".dxf"):
+            ctx.fail(f"no command given; did you mean `deltacam plan {args[0]}`?")
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=LateGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="deltacam", prog_name="deltacam")
+@click.option("--traceback", is_flag=True, help="On a fault of deltacam itself, show where it happened.")
+def cli(traceback: bool) -> None:
+    r"""From a DXF drawing to a verified robot program for a delta-robot laser cutter.
+
+    \b
+    deltacam plan part.dxf                  writes part.program.csv and its reports
+    deltacam verify part.program.csv        checks it again, independently
+
+    Exit codes: 0 done and every check passed; 1 a check failed; 2 the command line, robot, process or drawing must be
+    changed; 3 a fault of deltacam; 130 interrupted.
+    """
+
+
+def main() -> NoReturn:
+    """Run the command line and exit with the documented code."""
+    arguments = sys.argv[1:]
+    as_json = "--json" in arguments
+    try:
+        code = cli.main(args=arguments, prog_name="deltacam", standalone_mode=False)
+    except click.exceptions.Abort:
+        code = _interrupted()
+    except KeyboardInterrupt:
+        code = _interrupted()
+    except click.exceptions.Exit as problem:
+        code = problem.exit_code
+    except click.ClickException as problem:
+        code = _refused_by_click(problem, as_json)
+    except DeltacamError as problem:
+        code = _refused(problem.what, problem.where, problem.hint, as_json)
+    except BrokenPipeError:
+        # Who read the result has gone; without this Python complains once more while it shuts down.
+        sys.stdout = None
+        code = EXIT_FAULT
+    except Exception as problem:  # noqa: BLE001 - the last resort, so that no bare traceback reaches the user
+        code = _fault(problem, "--traceback" in arguments, as_json)
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _interrupted() -> int:
+    click.echo("interrupted; nothing half-written is left", err=True)
+    return EXIT_INTERRUPTED
+
+
+def _refused_by_click(problem: click.ClickException, as_json: bool) -> int:
+    if as_json:
+        return _refused(problem.format_message(), "command line", "see --help", as_json)
+    problem.show()
+    return EXIT_INPUT
+
+
+def _refused(what: str, where: str, hint: str, as_json: bool) -> int:
+    if as_json:
+        show_json({"passed": False, "error": {"what": what, "where": where, "hint": hint}})
+    place = f"{printable(where)}: " if where else ""
+    click.echo(f"error: {place}{printable(what)}", err=True)
+    if hint:
+        click.echo(f"hint: {printable(hint)}", err=True)
+    return EXIT_INPUT
+
+
+def _fault(problem: Exception, show: bool, as_json: bool) -> int:
+    what = f"a fault of deltacam: {type(problem).__name__}: {problem}"
+    if show:
+        click.echo("".join(traceback.format_exception(problem)), err=True)
+    _refused(what, "", "report it with the drawing and the output of `deltacam --traceback ...`", as_json)
+    return EXIT_FAULT
+
+
+def show_json(result: dict[str, Any]) -> None:
+    """Print the one JSON object of ``--json``."""
+    click.echo(json.dumps(result, allow_nan=False, indent=2))
+
+
+def printable(text: str) -> str:
+    """The text with control characters made visible, because names of files and layers come from strangers."""
+    return "".join(char if char.isprintable() or char == " " else f"\\x{ord(char):02x}" for char in text)
