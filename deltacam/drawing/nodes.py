@@ -1,0 +1,91 @@
+"""Which ends of open curves meet: a spatial index over the ends, in two steps.
+
+Ends that coincide, up to rounding in the file, share a node. Only ends that then stand alone may bridge a gap up to
+the joining tolerance. So a curve shorter than the tolerance stays a curve where its ends meet others exactly, and a
+chain of tiny curves never collapses into one place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from deltacam.errors import DrawingError
+from deltacam.model import Array, BoolArray, IntArray
+from deltacam.units import to_mm
+
+JOINING: Final = 1e-5
+"""Ends up to 0.01 mm apart are joined."""
+
+COINCIDENT: Final = 1e-7
+"""Ends up to 0.1 um apart are the same: the rounding of the numbers in a file."""
+
+_CROWD: Final = 200
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nodes:
+    """Where the ends of M curves meet.
+
+    Attributes:
+        labels: (M, 2) the node of each curve's start and end.
+        places: (K, 2) m, one end at each node.
+        specks: (M,) curves shorter than the gap that is bridged across them; they take part in no node.
+    """
+
+    labels: IntArray
+    places: Array
+    specks: BoolArray
+
+
+def find(ends: Array) -> Nodes:
+    """The nodes of the ends, (M, 2, 2) m.
+
+    Raises:
+        DrawingError: hundreds of ends in one place.
+    """
+    flat = ends.reshape(-1, 2)
+    labels = _clusters(flat, COINCIDENT)
+    alone = np.flatnonzero(np.bincount(labels)[labels] == 1)
+    specks = np.zeros(len(ends), dtype=np.bool_)
+    groups = _clusters(flat[alone], JOINING)
+    order = np.argsort(groups, kind="stable")
+    counts = np.bincount(groups)
+    for group in np.split(alone[order], np.cumsum(counts)[:-1]):
+        if len(group) > 1:
+            _bridge(group, flat, labels, specks)
+    _, first, tidy = np.unique(labels, return_index=True, return_inverse=True)
+    return Nodes(tidy.reshape(-1, 2).astype(np.int64), flat[first], specks)
+
+
+def _bridge(group: IntArray, flat: Array, labels: IntArray, specks: BoolArray) -> None:
+    """Gives the ends of one group a common node; curves with both ends in a larger group are specks."""
+    if len(group) > 2:
+        curves_of, times = np.unique(group // 2, return_counts=True)
+        inner = curves_of[times == 2]
+        specks[inner] = True
+        group = group[~np.isin(group // 2, inner)]
+    if len(group) != 2 or np.hypot(*(flat[group[0]] - flat[group[1]])) <= JOINING:
+        labels[group] = labels[group[:1]]
+
+
+def _clusters(points: Array, distance: float) -> IntArray:
+    """The connected group, counted from 0, of each point (N, 2) when points up to ``distance`` apart are neighbours."""
+    if not len(points):
+        return np.zeros(0, dtype=np.int64)
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    unique, inverse = np.unique(points, axis=0, return_inverse=True)
+    index = cKDTree(unique)
+    if index.count_neighbors(index, distance) > _CROWD * len(unique):
+        x, y = to_mm(float(unique[0, 0])), to_mm(float(unique[0, 1]))
+        raise DrawingError(f"hundreds of line ends crowd in one place, near ({x:.3f}, {y:.3f}) mm")
+    pairs = index.query_pairs(distance, output_type="ndarray")
+    shape = (len(unique), len(unique))
+    links = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=shape)
+    _, labels = connected_components(links, directed=False)
+    return np.asarray(labels[inverse.reshape(-1)], dtype=np.int64)

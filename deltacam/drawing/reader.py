@@ -1,0 +1,148 @@
+"""The bytes of a DXF file to a ``Drawing``: read, scale, join, nest, and account for every entity."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from deltacam.drawing import containment, document, entities, join, scale
+from deltacam.drawing.entities import Entity
+from deltacam.errors import DrawingError
+from deltacam.geometry import curve as curves
+from deltacam.model import Contour, Drawing, Finding, LedgerEntry, Outcome
+
+
+def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: float | None = None) -> Drawing:
+    """The closed contours of a DXF file's modelspace, and what became of every entity.
+
+    Ends are joined at 0.01 mm. Entities on frozen layers and on layers that are off are read like all others, with a
+    finding per layer.
+
+    Args:
+        path: the DXF file.
+        unit: mm, cm, m, um, in, ft, mil or pt; wins over the file's header, with a finding where they differ.
+        metres_per_unit: an exact factor; wins over both.
+
+    Raises:
+        DrawingError: the file cannot be read, states no unit, is not flat, has contours that cross, or holds nothing
+            that can be cut.
+        DeltacamError: a ``unit`` that is not known.
+    """
+    path = Path(path)
+    data = document.read_bytes(path)
+    source = document.load(data, path.name)
+    # ezdxf fills in a default header where the file has none; only the file's own unit counts.
+    header = source.header.get("$INSUNITS") if b"$INSUNITS" in data else None
+    chosen = scale.choose(header, unit=unit, metres_per_unit=metres_per_unit)
+    drawn = entities.read(source, chosen.metres if chosen else 1e-3)
+    if chosen is None:
+        raise _without_unit(drawn, source, path.name)
+    joined = join.join(drawn)
+    if not joined.loops:
+        raise _nothing_to_cut(drawn, joined, source, path.name)
+    contours, touching = containment.nest([_contour(i + 1, loop, drawn) for i, loop in enumerate(joined.loops)])
+    return Drawing(
+        file=path.name,
+        sha256=hashlib.sha256(data).hexdigest(),
+        metres_per_unit=chosen.metres,
+        unit=chosen.name,
+        contours=contours,
+        ledger=_ledger(drawn, joined),
+        findings=(
+            *chosen.findings,
+            *_layer_findings(drawn, source),
+            *_ignored_findings(drawn, source),
+            *joined.findings,
+            *touching,
+        ),
+        conversion_error=max(loop.error for loop in joined.loops),
+    )
+
+
+def _contour(number: int, loop: join.Loop, drawn: Sequence[Entity]) -> Contour:
+    """The contour of a loop, not yet nested."""
+    handles = tuple(drawn[i].handle for i in loop.members)
+    return Contour(number=number, curve=loop.curve, layer=drawn[loop.members[0]].layer, handles=handles)
+
+
+def _ledger(drawn: Sequence[Entity], joined: join.Joined) -> tuple[LedgerEntry, ...]:
+    """One entry per entity, in the order of the file."""
+    contour = {i: number for number, loop in enumerate(joined.loops, start=1) for i in loop.members}
+    entries = []
+    for i, entity in enumerate(drawn):
+        if i in contour:
+            outcome, reason = Outcome.CUT, ""
+        elif entity.curve is not None:
+            outcome, reason = joined.notes[i]
+        else:
+            outcome, reason = Outcome.MERGED if entity.is_insert else Outcome.IGNORED, entity.reason
+        number = contour.get(i, contour.get(joined.copies.get(i, -1)))
+        entries.append(LedgerEntry(entity.handle, entity.kind, entity.layer, entity.block, outcome, reason, number))
+    return tuple(entries)
+
+
+def _layer_findings(drawn: Sequence[Entity], source: Any) -> list[Finding]:
+    """One finding per layer that is frozen or off and holds curves."""
+    hidden = {}
+    for layer in source.layers:
+        if layer.is_frozen() or layer.is_off():
+            hidden[str(layer.dxf.name).casefold()] = "frozen" if layer.is_frozen() else "off"
+    counts = Counter(entity.layer for entity in drawn if entity.curve is not None)
+    found = []
+    for layer, count in counts.items():
+        state = hidden.get(layer.casefold())
+        if state:
+            what = f"the layer is {state}, but its {_counted(count, 'curve')} read like all others"
+            found.append(Finding(what, where=f"layer {layer}", hint="delete what is not to be cut"))
+    return found
+
+
+def _ignored_findings(drawn: Sequence[Entity], source: Any) -> list[Finding]:
+    """One finding per kind of entity that is not cut, and one for paper space."""
+    kinds = Counter((entity.kind, entity.reason) for entity in drawn if entity.curve is None and not entity.is_insert)
+    found = [Finding(f"{_counted(count, kind)} not cut: {reason}") for (kind, reason), count in kinds.items()]
+    paper = _in_paper_space(source)
+    if paper:
+        found.append(Finding(f"{_counted(paper, 'entity', 'entities')} not read: in paper space"))
+    return found
+
+
+def _in_paper_space(source: Any) -> int:
+    """How many entities lie in layouts other than the modelspace; their viewports do not count."""
+    layouts = [layout for layout in source.layouts if layout.name != "Model"]
+    return sum(entity.dxftype() != "VIEWPORT" for layout in layouts for entity in layout)
+
+
+def _without_unit(drawn: Sequence[Entity], source: Any, file: str) -> DrawingError:
+    """The error for a drawing, read as if in mm, that states no unit."""
+    boxes = [curves.bounds(entity.curve) for entity in drawn if entity.curve is not None]
+    if not boxes:
+        return _nothing_to_cut(drawn, join.Joined(), source, file)
+    low_x, low_y, high_x, high_y = zip(*boxes, strict=True)
+    error = scale.missing((1e3 * (max(high_x) - min(low_x)), 1e3 * (max(high_y) - min(low_y))))
+    return DrawingError(error.what, where=file, hint=error.hint)
+
+
+def _nothing_to_cut(drawn: Sequence[Entity], joined: join.Joined, source: Any, file: str) -> DrawingError:
+    """The error for a drawing without a closed contour, with what it does hold."""
+    kinds = Counter(entity.kind for entity in drawn if entity.curve is None)
+    found = [_counted(joined.open_chains, "open chain", verb=False)] if joined.open_chains else []
+    found += [f"{count} {kind}" for kind, count in kinds.items()]
+    paper = _in_paper_space(source)
+    found += [f"{_counted(paper, 'entity', 'entities', verb=False)} in paper space"] if paper else []
+    if not found:
+        held = "it holds no entities" if not drawn else "it holds only lines of length zero"
+        return DrawingError(f"nothing to cut: {held}", where=file, hint="export the drawing again")
+    hint = "draw the part as closed outlines in the modelspace"
+    notes = [reason for _, reason in joined.notes.values() if "gap of" in reason]
+    where = f" ({notes[0]})" if notes else ""
+    return DrawingError(f"nothing to cut: {', '.join(found)}{where}", where=file, hint=hint)
+
+
+def _counted(count: int, one: str, many: str = "", *, verb: bool = True) -> str:
+    """A count with its noun, and is or are: ``2 curves are``."""
+    noun = one if count == 1 else many or (one if one.isupper() else f"{one}s")
+    return f"{count} {noun}{(' is' if count == 1 else ' are') if verb else ''}"
