@@ -35,10 +35,10 @@ _FIRST_ROW: Final = 4  # its line
 _MAX_META: Final = 64 * 2**20
 _CHUNK: Final = 4 * 2**20  # bytes; no row is longer
 _ROWS_PER_CHUNK: Final = 10_000
-_MAX_ANGLE: Final = 1e3  # rad; up to here 12 decimals determine the angle, and writing what was read changes no byte
 _HALF_DIGIT: Final = 5e-13  # what "%.12f" still writes as zero
 _NUMBER: Final = re.compile(rb"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _IN_NUMBERS: Final = b"0123456789+-.eE,\r\n"
+_DAMAGED: Final = "the file was damaged or edited; plan the drawing again"
 
 
 def write(program: Program, stream: BinaryIO) -> None:
@@ -55,8 +55,6 @@ def write(program: Program, stream: BinaryIO) -> None:
     if program.integrity:
         hint = "plan the drawing again"
         raise ProgramError(f"a damaged program is not written: {program.integrity[0]}", hint=hint)
-    if np.abs(program.q).max() > _MAX_ANGLE:
-        raise ProgramError(f"a joint angle is {np.abs(program.q).max():.6g} rad; the file holds up to {_MAX_ANGLE:g}")
     start = stream.tell()
     stream.write(_preamble(program, "0" * 64))
     digest = hashlib.sha256(HEADER)
@@ -101,7 +99,7 @@ def read(stream: BinaryIO, *, name: str) -> Program:
             integrity=tuple(problems),
         )
     except ValueError as problem:
-        raise ProgramError(str(problem), where=name) from problem
+        raise ProgramError(str(problem), where=name, hint=_DAMAGED) from problem
 
 
 def _preamble(program: Program, sha256: str) -> bytes:
@@ -238,19 +236,18 @@ def _whole_numbers(values: Array) -> bool:
 def _row_problem(chunk: bytes, name: str, first_line: int) -> ProgramError:
     """The error that names the first line of ``chunk`` that is not a row."""
     lines = chunk.removesuffix(b"\n").split(b"\n")
-    hint = "the file was damaged or edited; plan the drawing again"
     for line, row in enumerate(lines, start=first_line):
         where = f"{name}, line {line}"
         cells = row.removesuffix(b"\r").split(b",")
         if len(cells) != _COLUMNS:
-            return ProgramError(f"the row has {len(cells)} fields instead of {_COLUMNS}", where=where, hint=hint)
+            return ProgramError(f"the row has {len(cells)} fields instead of {_COLUMNS}", where=where, hint=_DAMAGED)
         for column, cell in zip(HEADER.decode().strip().split(","), cells, strict=True):
             shown = cell[:40].decode("ascii", "backslashreplace")
             if not _NUMBER.fullmatch(cell) or not np.isfinite(float(cell)):
-                return ProgramError(f"{column} is {shown!r}, which is not a number", where=where, hint=hint)
+                return ProgramError(f"{column} is {shown!r}, which is not a number", where=where, hint=_DAMAGED)
             if column in ("tick", "block") and not _whole_numbers(np.array([float(cell)])):
-                return ProgramError(f"{column} is {shown!r}, which is not a whole number", where=where, hint=hint)
-    return ProgramError("the rows cannot be read", where=f"{name}, from line {first_line}", hint=hint)
+                return ProgramError(f"{column} is {shown!r}, which is not a whole number", where=where, hint=_DAMAGED)
+    return ProgramError("the rows cannot be read", where=f"{name}, from line {first_line}", hint=_DAMAGED)
 
 
 def _file_problems(meta: metas.Meta, found: _Rows) -> list[str]:

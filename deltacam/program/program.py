@@ -14,6 +14,9 @@ from deltacam.robot.robot import Robot
 TICK_COLUMN: Final = "tick column: "
 """What the messages of `Program.integrity` start with that are about missing, repeated or misplaced ticks."""
 
+MAX_ANGLE: Final = 1e3
+"""Largest joint angle, rad: up to here 12 decimals determine the angle, and no difference of angles overflows."""
+
 
 @dataclass(frozen=True, slots=True)
 class DrawingRef:
@@ -49,7 +52,8 @@ class Program:
         integrity: what is wrong with the file that it was read from, one message each; empty for a new program.
 
     Raises:
-        ValueError: arrays of other shapes, of different length or empty, or a value that is not finite.
+        ValueError: arrays of other shapes, of different length or empty, a value that is not finite, or a joint angle
+            beyond `MAX_ANGLE`.
     """
 
     robot: Robot
@@ -71,6 +75,8 @@ class Program:
         object.__setattr__(self, "integrity", tuple(self.integrity))
         if not 1 <= len(self.q) == len(self.power) == len(self.block):
             raise ValueError(f"{len(self.q)} setpoints, {len(self.power)} powers and {len(self.block)} block indices")
+        if np.abs(self.q).max() > MAX_ANGLE:
+            raise ValueError(f"a joint angle is {np.abs(self.q).max():.6g} rad; at most {MAX_ANGLE:g} is possible")
 
     @property
     def rate_hz(self) -> float:

@@ -50,7 +50,7 @@ def assert_equal(found: Program, expected: Program) -> None:
     for name in ("placement", "process", "drawing", "mode", "blocks", "robot", "integrity"):
         assert getattr(found, name) == getattr(expected, name), name
     assert found.robot.fingerprint == expected.robot.fingerprint
-    assert np.abs(found.q - expected.q).max() <= 0.5e-12 * (1 + 1e-3)
+    assert (np.abs(found.q - expected.q) <= 0.5e-12 + 2.0 * np.spacing(np.abs(expected.q))).all()
     assert np.array_equal(found.power, expected.power)
     assert np.array_equal(found.block, expected.block)
 
@@ -126,11 +126,6 @@ def test_a_damaged_program_is_not_written_again(program: Program) -> None:
     assert damaged.integrity
     with pytest.raises(ProgramError, match="damaged"):
         written(damaged)
-
-
-def test_angles_that_12_decimals_do_not_hold_are_refused(with_rows: Callable[..., Program]) -> None:
-    with pytest.raises(ProgramError, match="1e\\+06 rad"):
-        written(with_rows(np.full((2, 3), 1e6)))
 
 
 def test_a_process_that_is_not_finite_is_refused(program: Program) -> None:
@@ -213,6 +208,7 @@ REFUSED: dict[str, tuple[Callable[[bytes], bytes], str, str]] = {
     "nan": (body_edit(b"0.100000000000", b"nan"), "line 4", "q1_rad is 'nan'"),
     "inf": (body_edit(b"0.100000000000", b"-inf"), "line 4", "q1_rad is '-inf'"),
     "1e999": (body_edit(b"0.100000000000", b"1e999"), "line 4", "q1_rad is '1e999'"),
+    "an angle of a million": (body_edit(b"0.100000000000", b"1e6"), "", "a joint angle is 1e+06 rad"),
     "an underscore": (body_edit(b"0.100000000000", b"1_0"), "line 4", "q1_rad is '1_0'"),
     "a space": (body_edit(b"0.100000000000", b" 0.1"), "line 4", "q1_rad is ' 0.1'"),
     "a semicolon": (body_edit(b"0.100000000000,", b"0.1;"), "line 4", "5 fields"),

@@ -71,6 +71,7 @@ def test_importing_the_formats_loads_nothing_heavy() -> None:
         (np.zeros((2, 3)), np.zeros(3), np.zeros(2, dtype=int)),
         (np.zeros((2, 3)), np.zeros(2), np.zeros(1, dtype=int)),
         (np.zeros((2, 3)), np.zeros(2), np.zeros(2)),
+        (np.full((2, 3), 1e6), np.zeros(2), np.zeros(2, dtype=int)),
         (np.full((2, 3), np.nan), np.zeros(2), np.zeros(2, dtype=int)),
         (np.zeros((2, 3)), np.full(2, np.inf), np.zeros(2, dtype=int)),
     ],
@@ -78,7 +79,7 @@ def test_importing_the_formats_loads_nothing_heavy() -> None:
 def test_a_program_of_wrong_arrays_cannot_be_made(
     with_rows: Callable[..., Program], q: np.ndarray, power: np.ndarray, block: np.ndarray
 ) -> None:
-    with pytest.raises(ValueError, match=r"shape|finite|setpoints"):
+    with pytest.raises(ValueError, match=r"shape|finite|setpoints|joint angle"):
         with_rows(q, power, block)
 
 

@@ -1,0 +1,53 @@
+"""The table of checks. A new check is a function in its file and one line here; the order is that of every report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from deltacam.model import Check
+from deltacam.verification import contours, file, laser, limits, reach
+from deltacam.verification.contours import Comparison
+from deltacam.verification.evidence import Evidence
+
+OF_SETPOINTS: Final[tuple[Callable[[Evidence], Check], ...]] = (
+    file.integrity,
+    file.tick_continuity,
+    file.block_table,
+    file.robot,
+    limits.joint_range,
+    limits.joint_speed,
+    limits.joint_acceleration,
+    laser.power_range,
+    laser.laser_off,
+    laser.laser_on,
+    laser.pierce_before_cut,
+    reach.poses,
+)
+"""Checks that need the rows alone."""
+
+OF_POSITIONS: Final[tuple[Callable[[Evidence], Check], ...]] = (
+    reach.reach_margin,
+    reach.pressure_angle,
+    reach.forearm_swing,
+    reach.sheet_plane,
+    reach.sheet_area,
+    reach.park,
+    limits.rest_at_ends,
+    limits.tool_speed,
+    limits.tool_acceleration,
+    limits.feed,
+    laser.pierce_at_rest,
+)
+"""Checks that need the tool's position at every tick."""
+
+OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
+    contours.known_contours,
+    contours.cut_once,
+    contours.deviation,
+    contours.deviation_between,
+    contours.uncut,
+    contours.cut_length,
+    contours.holes_first,
+)
+"""Checks that need the drawing too."""

@@ -1,0 +1,223 @@
+"""Checks of the cuts against the drawing: on the kerf path, complete, once, and in an order that drops no part."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from deltacam.model import Array, Check, Contour, Drawing, IntArray
+from deltacam.program.program import Program
+from deltacam.verification.evidence import Evidence, Run, to_sheet, tool_points
+from deltacam.verification.kerf_path import ACCURACY, rings, sharp_corners
+from deltacam.verification.measure import at_most
+from deltacam.verification.near import Lines
+
+LENGTH_TOLERANCE: Final = 0.02
+"""How much longer or shorter than its kerf path a cut may be, beside what the tolerances allow."""
+
+_SHARPEST: Final = np.radians(170.0)  # a sharper corner gets no more allowance than this one
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Target:
+    """A contour of the drawing, its kerf path, and what the program does there.
+
+    Attributes:
+        contour: of the drawing.
+        rings: its kerf path, (K, 2) m each, in the sheet frame.
+        path: the same, for distances; None where there is no ring.
+        runs: the cuts of the program that say they cut it.
+    """
+
+    contour: Contour
+    rings: tuple[Array, ...]
+    path: Lines | None
+    runs: tuple[Run, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Comparison:
+    """A program beside the drawing that it should cut.
+
+    Attributes:
+        evidence: of the program.
+        drawing: read by the checker itself.
+        targets: one per contour, in the drawing's order.
+    """
+
+    evidence: Evidence
+    drawing: Drawing
+    targets: tuple[Target, ...]
+
+
+def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
+    """Put the cuts of a program beside the contours of a drawing."""
+    runs: defaultdict[int | None, list[Run]] = defaultdict(list)
+    for run in evidence.runs:
+        runs[run.contour].append(run)
+    targets = []
+    for contour in drawing.contours:
+        found = rings(contour, evidence.program.process.kerf)
+        path = Lines(found, closed=True) if found else None
+        targets.append(Target(contour, found, path, tuple(runs[contour.number])))
+    return Comparison(evidence, drawing, tuple(targets))
+
+
+def same_drawing(program: Program, drawing: Drawing) -> Check:
+    """The drawing is the one that was planned, at the same scale."""
+    planned, given = program.drawing, drawing
+    problems = []
+    if planned.sha256 != given.sha256:
+        problems.append(f"planned from {planned.file}, checked against {given.file}, whose bytes differ")
+    if planned.metres_per_unit != given.metres_per_unit:
+        problems.append(f"planned at {planned.metres_per_unit:g} m per unit, read at {given.metres_per_unit:g}")
+    return Check("drawing", not problems, where="; ".join(problems))
+
+
+def known_contours(comparison: Comparison) -> Check:
+    """Every cut is of a contour that the drawing has."""
+    known = {contour.number for contour in comparison.drawing.contours}
+    strange = [run for run in comparison.evidence.runs if run.contour not in known]
+    tick = strange[0].first if strange else None
+    where = comparison.evidence.place(strange[0].first) if strange else ""
+    return Check("cuts of drawn contours only", not strange, float(len(strange)), 0.0, "cuts", tick, where)
+
+
+def cut_once(comparison: Comparison) -> Check:
+    """Every contour is cut exactly once: as many cuts as its kerf path has rings, and it has at least one."""
+    wrong = [target for target in comparison.targets if len(target.runs) != len(target.rings) or not target.rings]
+    words, tick = "", None
+    if wrong:
+        first = wrong[0]
+        words = f"{first.contour.where}: {len(first.runs)} cuts of {len(first.rings)} rings"
+        tick = first.runs[-1].first if first.runs else None
+    return Check("every contour cut once", not wrong, float(len(wrong)), 0.0, "contours", tick, words)
+
+
+def deviation(comparison: Comparison) -> Check:
+    """How far the tool is from the kerf path of the contour that it cuts, at every tick with the laser on."""
+    limit = comparison.evidence.program.process.tolerance
+    rows = [_ticks(target.runs, including_end=True) for target in comparison.targets]
+    return _worst_distance(comparison, "deviation at ticks", rows, comparison.evidence.sheet, limit)
+
+
+def deviation_between(comparison: Comparison) -> Check:
+    """The same half-way between the ticks, where the controller interpolates the joints."""
+    evidence = comparison.evidence
+    process = evidence.program.process
+    limit = process.tolerance + process.chord_tolerance
+    rows = [_ticks(target.runs, including_end=False) for target in comparison.targets]
+    cut = np.concatenate([np.empty(0, dtype=np.int64), *rows])
+    points, (row, why) = tool_points(evidence.robot, _between(evidence, cut))
+    if why:
+        return Check("deviation between ticks", False, tick=int(cut[row]), where=why)
+    places = np.zeros((len(evidence.sheet), 2))
+    places[cut] = to_sheet(evidence.program, points)
+    return _worst_distance(comparison, "deviation between ticks", rows, places, limit)
+
+
+def uncut(comparison: Comparison) -> Check:
+    """How much of the kerf path no cut comes near, in total; nothing may stay.
+
+    Near is the tolerance of the path and of its chords. A corner that is rounded within the tolerance stays further
+    from its tip, by the inverse of the sine of half the angle between its sides.
+    """
+    process = comparison.evidence.program.process
+    near = process.tolerance + process.chord_tolerance + ACCURACY
+    missing, words = [0.0], [""]
+    for target in comparison.targets:
+        left, (x, y) = _uncut(comparison.evidence, target, near)
+        missing.append(left)
+        words.append(f"{target.contour.where}: {1e3 * left:.3f} mm, from x {1e3 * x:.3f} y {1e3 * y:.3f} mm")
+    worst, total = int(np.argmax(missing)), sum(missing) * 1e3
+    return Check("uncut length", total == 0.0, total, 0.0, "mm", where=words[worst] if total else "")
+
+
+def cut_length(comparison: Comparison) -> Check:
+    """No cut is longer or shorter than its kerf path, beyond what a curve within the tolerances can be."""
+    process = comparison.evidence.program.process
+    # A closed curve that runs at a distance d beside another one is 2 pi d longer or shorter.
+    slack = 2.0 * np.pi * (process.tolerance + process.chord_tolerance)
+    worst, words, tick = 0.0, "", None
+    for target in comparison.targets:
+        nominal = sum(float(np.hypot(*(ring - np.roll(ring, 1, axis=0)).T).sum()) for ring in target.rings)
+        lines = [comparison.evidence.sheet[run.first : run.end + 1] for run in target.runs]
+        length = sum(float(np.hypot(*np.diff(line, axis=0).T).sum()) for line in lines)
+        off = max(abs(length - nominal) - slack, 0.0) / nominal if nominal else float(length > 0.0)
+        if lines and off > worst:
+            worst, tick = off, target.runs[0].first
+            words = f"{target.contour.where}: {1e3 * length:.3f} mm for {1e3 * nominal:.3f} mm"
+    limit = LENGTH_TOLERANCE * 100.0
+    return Check("cut length", 100.0 * worst <= limit, 100.0 * worst, limit, "% off", tick, words)
+
+
+def holes_first(comparison: Comparison) -> Check:
+    """A contour is cut after everything that it contains, which would lie loose otherwise."""
+    targets = {target.contour.number: target for target in comparison.targets}
+    wrong = []
+    for target in comparison.targets:
+        around = targets.get(target.contour.parent or 0)
+        if around and around.runs and target.runs and target.runs[-1].end > around.runs[0].first:
+            wrong.append((around.runs[0].first, f"{around.contour.where} before {target.contour.where}"))
+    tick, words = min(wrong) if wrong else (None, "")
+    return Check("inner contours first", not wrong, float(len(wrong)), 0.0, "contours", tick, words)
+
+
+def _ticks(runs: tuple[Run, ...], *, including_end: bool) -> IntArray:
+    ranges = [np.arange(run.first, run.end + including_end) for run in runs]
+    return np.concatenate([np.empty(0, dtype=np.int64), *ranges])
+
+
+def _worst_distance(comparison: Comparison, name: str, rows: list[IntArray], places: Array, limit: float) -> Check:
+    """The check that the ``places`` (N, 2) at the ``rows`` of each target are within ``limit`` m of its path."""
+    found = [np.empty(0)]
+    ticks = [np.empty(0, dtype=np.int64)]
+    for target, cut in zip(comparison.targets, rows, strict=True):
+        if target.path is not None and len(cut):
+            found.append(target.path.distance(places[cut], exact_above=limit / 2.0))
+            ticks.append(cut)
+    values, at = np.concatenate(found) * 1e6, np.concatenate(ticks)
+    return at_most(comparison.evidence, name, values, (limit + ACCURACY) * 1e6, "um", ticks=at)
+
+
+def _between(evidence: Evidence, rows: IntArray) -> Array:
+    """The joint angles half-way from ``rows`` (M,) to the next rows as the controller interpolates, (M, 3) rad."""
+    q = evidence.program.q
+    middle = (q[rows] + q[rows + 1]) / 2.0
+    if evidence.robot.controller.interpolation == "cubic":
+        # Hermite: the slopes m are central differences, and the middle moves by dt (m0 - m1) / 8.
+        last = len(q) - 1
+        slope = q[np.minimum(rows + 1, last)] - q[np.maximum(rows - 1, 0)]
+        middle += (slope - (q[np.minimum(rows + 2, last)] - q[rows])) / 16.0
+    return np.asarray(middle)
+
+
+def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tuple[float, float]]:
+    """The length of a target's path that no cut of it comes ``near``, m, and where it starts."""
+    if target.path is None:
+        return 0.0, (0.0, 0.0)  # `cut_once` reports it
+    samples, share = target.path.samples, target.path.share
+    if not target.runs:
+        return float(share.sum()), (float(samples[0, 0]), float(samples[0, 1]))
+    cut = Lines([evidence.sheet[run.first : run.end + 1] for run in target.runs], closed=False)
+    distance = cut.distance(samples, exact_above=near / 2.0)
+    left = np.flatnonzero(distance > near)
+    left = left[~_in_rounded_corner(target, samples[left], distance[left], near)]
+    if not len(left):
+        return 0.0, (0.0, 0.0)
+    return float(share[left].sum()), (float(samples[left[0], 0]), float(samples[left[0], 1]))
+
+
+def _in_rounded_corner(target: Target, points: Array, distance: Array, near: float) -> np.ndarray:
+    """Which ``points`` (M, 2) lie so close to a sharp corner that rounding it may leave them at ``distance``, (M,)."""
+    found = [sharp_corners(ring) for ring in target.rings]
+    corners = np.concatenate([corner for corner, _ in found])
+    if not len(corners) or not len(points):
+        return np.zeros(len(points), dtype=bool)
+    half = np.minimum(np.concatenate([turn for _, turn in found]), _SHARPEST) / 2.0
+    away, corner = cKDTree(corners).query(points)
+    return np.asarray((away <= near * (1.0 + np.tan(half[corner]))) & (distance <= near / np.cos(half[corner])))

@@ -1,0 +1,163 @@
+"""What all checks look at: the motion recomputed from the joint setpoints, and what the laser does at every tick."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from deltacam.errors import RobotError
+from deltacam.model import Array, Block, BlockKind, BoolArray, IntArray
+from deltacam.program.program import Program
+from deltacam.robot.robot import Robot
+
+KINDS: Final = tuple(BlockKind)
+"""`Evidence.kind` holds indices into this."""
+
+LASER_KINDS: Final = frozenset(KINDS) - {BlockKind.RAPID}
+"""The kinds of block in which the laser is on."""
+
+MOVING_KINDS: Final = LASER_KINDS - {BlockKind.PIERCE}
+"""The kinds of block that move along the sheet with the laser on."""
+
+_CHUNK: Final = 65_536  # rows at a time, which bounds the memory of the kinematics
+_NO_BLOCK: Final = Block(BlockKind.RAPID, 0, 0)  # of a row whose block does not exist; the laser must be off there
+
+
+class Run(NamedTuple):
+    """Rows in a row that cut one contour: the motion from tick ``first`` to tick ``end``.
+
+    Row ``end - 1`` is the last one with the laser on; it holds until tick ``end``.
+    """
+
+    contour: int | None
+    first: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evidence:
+    """A program and what follows from its setpoints alone.
+
+    Attributes:
+        program: the program.
+        robot: the machine that it is checked against.
+        tool: where the tool is at every tick, (N, 3) m in the base frame; (0, 3) when a pose is impossible.
+        sheet: the same in the sheet frame, (N, 2) m.
+        impossible: the first tick at which the arms cannot close, and why; empty text when there is none.
+        kind: index into `KINDS` of every row, (N,).
+        runs: the cuts, in order.
+    """
+
+    program: Program
+    robot: Robot
+    tool: Array
+    sheet: Array
+    impossible: tuple[int, str]
+    kind: IntArray
+    runs: tuple[Run, ...]
+
+    @property
+    def rate(self) -> float:
+        """Ticks per second, of the robot's controller."""
+        return self.robot.controller.rate_hz
+
+    def block_of(self, row: int) -> Block:
+        """The block of a row."""
+        index = int(self.program.block[row])
+        return self.program.blocks[index] if 0 <= index < len(self.program.blocks) else _NO_BLOCK
+
+    def is_kind(self, kinds: frozenset[BlockKind]) -> BoolArray:
+        """Which rows are of one of ``kinds``, (N,)."""
+        return np.isin(self.kind, [KINDS.index(kind) for kind in kinds])
+
+    def place(self, row: int) -> str:
+        """Where the tool is at a row, in words: sheet coordinates, and the contour that is worked on."""
+        block = self.block_of(row)
+        words = f"x {1e3 * self.sheet[row, 0]:.3f} y {1e3 * self.sheet[row, 1]:.3f} mm" if len(self.sheet) else ""
+        if block.contour is not None:
+            handle = f", #{block.handles[0]}" if block.handles else ""
+            words += f"{', ' if words else ''}contour {block.contour} (layer {block.layer}{handle})"
+        return words
+
+
+def gather(program: Program, robot: Robot) -> Evidence:
+    """The evidence of ``program`` on ``robot``."""
+    tool, impossible = tool_points(robot, program.q)
+    kind = _kinds(program)
+    return Evidence(
+        program=program,
+        robot=robot,
+        tool=tool,
+        sheet=to_sheet(program, tool),
+        impossible=impossible,
+        kind=kind,
+        runs=_runs(program, kind == KINDS.index(BlockKind.CUT)),
+    )
+
+
+def tool_points(robot: Robot, q: Array) -> tuple[Array, tuple[int, str]]:
+    """The tool at joint angles ``q`` (N, 3) rad: (N, 3) m, and the first row that has none and why.
+
+    Where a row has none there are no points at all, (0, 3), so that nothing can be concluded from half of them.
+    """
+    parts = []
+    for first in range(0, len(q), _CHUNK):
+        chunk = q[first : first + _CHUNK]
+        try:
+            parts.append(robot.forward(chunk))
+        except RobotError as problem:
+            return np.empty((0, 3)), (first + _first_impossible(robot, chunk), problem.what)
+    return np.concatenate([np.empty((0, 3)), *parts]), (0, "")
+
+
+def in_chunks(measure: Callable[[Array], Array], points: Array) -> Array:
+    """``measure`` of ``points`` (N, ...), a bounded number at a time; it returns (n,) for n points."""
+    parts = [measure(points[first : first + _CHUNK]) for first in range(0, len(points), _CHUNK)]
+    return np.concatenate([np.empty(0), *parts])
+
+
+def _first_impossible(robot: Robot, q: Array) -> int:
+    """The first row of ``q`` that `Robot.forward` refuses, by halving; there is one."""
+    low, high = 0, len(q)
+    while high - low > 1:
+        middle = (low + high) // 2
+        try:
+            robot.forward(q[low:middle])
+            low = middle
+        except RobotError:
+            high = middle
+    return low
+
+
+def to_sheet(program: Program, tool: Array) -> Array:
+    """Base xy = Rz(rotation) sheet xy + (x, y), inverted."""
+    placement = program.placement
+    cos, sin = np.cos(placement.rotation), np.sin(placement.rotation)
+    arm = tool[:, :2] - (placement.x, placement.y)
+    return np.stack([cos * arm[:, 0] + sin * arm[:, 1], cos * arm[:, 1] - sin * arm[:, 0]], axis=1)
+
+
+def _kinds(program: Program) -> IntArray:
+    """The kind of every row by its block column; a block that does not exist counts as a rapid."""
+    table = np.array([KINDS.index(block.kind) for block in (*program.blocks, _NO_BLOCK)], dtype=np.int64)
+    known = (program.block >= 0) & (program.block < len(program.blocks))
+    return table[np.where(known, program.block, len(program.blocks))]
+
+
+def _runs(program: Program, cutting: BoolArray) -> tuple[Run, ...]:
+    """Consecutive rows that cut the same contour."""
+    contours = [-1 if block.contour is None else block.contour for block in program.blocks]
+    numbers = np.append(np.array(contours, dtype=np.int64), -1)
+    number = np.full(len(cutting), -2)
+    number[cutting] = numbers[program.block[cutting]]
+    changes = np.flatnonzero(np.diff(number, prepend=-3, append=-3))
+    final = len(cutting) - 1
+    return tuple(
+        Run(None if number[first] < 0 else int(number[first]), int(first), min(int(end), final))
+        for first, end in itertools.pairwise(changes)
+        if number[first] != -2
+    )

@@ -1,0 +1,53 @@
+"""Where the beam's centre must run, computed from the drawing by another way than the planner's.
+
+The contour is flattened much finer than any tolerance and the polygon is grown or shrunk by half the kerf.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from shapely import MultiPolygon, Polygon
+
+from deltacam.geometry.curve import flatten
+from deltacam.model import Array, Contour
+
+ACCURACY: Final = 0.3e-6
+"""Largest distance of a ring from the exact kerf path, m."""
+
+_SAGITTA: Final = 0.1e-6  # of the flattened contour, and of the round joins at its corners, m
+
+
+def rings(contour: Contour, kerf: float) -> tuple[Array, ...]:
+    """The kerf path of a contour as polygons: half a kerf outside an outline, half a kerf inside a hole.
+
+    Args:
+        contour: of the drawing.
+        kerf: width of the cut, m, >= 0.
+
+    Returns:
+        every ring, (K, 2) m in the sheet frame, the first point not repeated. None where the kerf swallows the contour
+        or the contour crosses itself; several where the path falls apart or closes a bay.
+    """
+    points, _ = flatten(contour.curve, _SAGITTA)
+    if len(points) < 3 or not (polygon := Polygon(points)).is_valid:
+        return ()
+    if kerf == 0.0:
+        return (points,)
+    half = kerf / 2.0
+    # A round join of q chords per quarter turn leaves its circle by r (1 - cos(pi / 4q)).
+    quarter = int(np.ceil(np.pi / 4.0 / np.arccos(1.0 - min(_SAGITTA / half, 0.2))))
+    grown = polygon.buffer(-half if contour.is_hole else half, quad_segs=max(quarter, 8), join_style="round")
+    parts = list(grown.geoms) if isinstance(grown, MultiPolygon) else [grown]
+    found = [ring for part in parts if not part.is_empty for ring in (part.exterior, *part.interiors)]
+    return tuple(np.asarray(ring.coords)[:-1, :2] for ring in found)
+
+
+def sharp_corners(ring: Array) -> tuple[Array, Array]:
+    """The vertices at which a ring turns by more than 10 degrees: (M, 2) m, and by how much, (M,) rad in 0 to pi."""
+    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turn = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
+    sharp = turn > np.radians(10.0)
+    return ring[sharp], turn[sharp]

@@ -1,0 +1,78 @@
+"""Turning measured values into a `Check`."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from deltacam.model import Array, BoolArray, Check, IntArray
+from deltacam.verification.evidence import Evidence
+
+DIFFERENCES: Final = 1.001
+"""Share of a limit that differences of setpoints may reach; a motion within its limits stays within them exactly."""
+
+MICROMETRE: Final = 1e-6
+"""How far rounding and the planner's own arithmetic may move a point that should be exact, m."""
+
+ROUNDING_DEG: Final = 1e-6
+"""How far rounding may move an angle, degrees; 12 decimals of a radian are far below it."""
+
+
+def at_most(
+    evidence: Evidence,
+    name: str,
+    values: Array,
+    limit: float,
+    unit: str,
+    *,
+    ticks: IntArray | None = None,
+    note: str = "",
+) -> Check:
+    """The check that no value exceeds ``limit``.
+
+    Args:
+        evidence: for the place of the worst value.
+        name: of the check.
+        values: (M,) in ``unit``; none at all passes.
+        limit: in ``unit``.
+        unit: of both.
+        ticks: the tick of every value, (M,); 0, 1, 2, ... by default.
+        note: what the place starts with.
+    """
+    if not len(values):
+        return Check(name, True, limit=limit, unit=unit)
+    row = int(np.argmax(values))
+    tick = row if ticks is None else int(ticks[row])
+    worst = float(values[row])
+    where = ", ".join(part for part in (note, evidence.place(tick)) if part)
+    return Check(name, worst <= limit, worst, limit, unit, tick, where)
+
+
+def per_joint(
+    evidence: Evidence, name: str, values: Array, limits: tuple[float, float, float], unit: str, *, ticks: IntArray
+) -> Check:
+    """The check that no joint exceeds its limit; the joint that comes closest is reported.
+
+    Args:
+        evidence: for the place.
+        name: of the check.
+        values: (M, 3) rad/s or rad/s2.
+        limits: per joint, in the same unit; `DIFFERENCES` is allowed on top.
+        unit: in degrees, for people.
+        ticks: (M,).
+    """
+    if not len(values):
+        return Check(name, True, limit=float(np.degrees(min(limits)) * DIFFERENCES), unit=unit)
+    joint = int(np.argmax((values / limits).max(axis=0)))
+    limit = float(np.degrees(limits[joint]) * DIFFERENCES)
+    return at_most(evidence, name, np.degrees(values[:, joint]), limit, unit, ticks=ticks, note=f"joint {joint + 1}")
+
+
+def none_of(evidence: Evidence, name: str, wrong: BoolArray, unit: str = "ticks") -> Check:
+    """The check that no row is ``wrong`` (N,); the first one is reported, and how many there are."""
+    rows = np.flatnonzero(wrong)
+    if not len(rows):
+        return Check(name, True, 0.0, 0.0, unit)
+    first = int(rows[0])
+    return Check(name, False, float(len(rows)), 0.0, unit, first, evidence.place(first))

@@ -1,0 +1,100 @@
+"""How far points are from lines, for millions of points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import shapely
+from scipy.spatial import cKDTree
+
+from deltacam.model import Array
+
+SPACING: Final = 0.1e-3
+"""Largest distance between neighbouring samples of a line, m."""
+
+_MOST_SAMPLES: Final = 2_000_000  # of one set of lines; a longer one is sampled more coarsely and rechecked more often
+
+
+class Lines:
+    """Polylines that answer how far points are from them.
+
+    A tree of samples finds the neighbourhood of a point, the two pieces at the nearest sample bound its distance from
+    above, and where that bound is not small, a tree of the pieces gives the exact distance.
+
+    Args:
+        lines: (K, 2) m each, K >= 1; at least one.
+        closed: whether the last point of every line joins its first.
+
+    Attributes:
+        samples: (M, 2) m, at most `SPACING` apart along a line.
+        share: the length of line that every sample stands for, (M,) m.
+    """
+
+    def __init__(self, lines: Sequence[Array], *, closed: bool) -> None:
+        loops = [np.concatenate([line, line[:1]]) if closed else line for line in lines]
+        total = sum(float(np.hypot(*np.diff(loop, axis=0).T).sum()) for loop in loops)
+        spacing = max(SPACING, total / _MOST_SAMPLES)
+        parts = [_subdivide(loop, spacing) for loop in loops]
+        counts = np.array([len(part) - 1 for part in parts])
+        self._starts = np.concatenate([part[:-1] for part in parts])
+        self._ends = np.concatenate([part[1:] for part in parts])
+        self.samples = self._starts
+        self.share = np.hypot(*(self._ends - self._starts).T)
+        # Samples are the starts of the pieces, so that the end of an open line needs one of its own.
+        first = np.repeat(np.cumsum(counts) - counts, counts)
+        last = first + np.repeat(counts, counts) - 1
+        here = np.arange(len(self._starts))
+        self._before = np.where(here > first, here - 1, last if closed else here)
+        self._tree = cKDTree(self._starts if closed else np.concatenate([self._starts, self._ends[np.unique(last)]]))
+        self._extra = np.unique(last)
+        self._pieces: shapely.STRtree | None = None
+
+    def distance(self, points: Array, *, exact_above: float) -> Array:
+        """How far every point is from the nearest line.
+
+        Args:
+            points: (N, 2) m.
+            exact_above: m; a value below it may be too large, but stays below it.
+
+        Returns:
+            (N,) m.
+        """
+        _, nearest = self._tree.query(points)
+        extra = nearest >= len(self._starts)
+        piece = np.where(extra, self._extra[np.where(extra, nearest - len(self._starts), 0)], nearest)
+        found = np.minimum(self._to_piece(points, piece), self._to_piece(points, self._before[piece]))
+        far = np.flatnonzero(found > exact_above)
+        if len(far):
+            found[far] = self._exact(points[far])
+        return np.asarray(found)
+
+    def _to_piece(self, points: Array, piece: np.ndarray) -> Array:
+        start, along = self._starts[piece], self._ends[piece] - self._starts[piece]
+        square = np.sum(along**2, axis=1)
+        arm = points - start
+        share = np.divide(np.sum(arm * along, axis=1), square, out=np.zeros_like(square), where=square > 0.0)
+        off = arm - np.clip(share, 0.0, 1.0)[:, np.newaxis] * along
+        return np.asarray(np.hypot(off[:, 0], off[:, 1]))
+
+    def _exact(self, points: Array) -> Array:
+        if self._pieces is None:
+            self._pieces = shapely.STRtree(shapely.linestrings(np.stack([self._starts, self._ends], axis=1)))
+        _, piece = self._pieces.query_nearest(shapely.points(points), all_matches=False)
+        return self._to_piece(points, piece)
+
+
+def _subdivide(line: Array, spacing: float) -> Array:
+    """A line with further points on it, at most ``spacing`` apart, without repeated ones: (M, 2) m, M >= 2."""
+    step = np.diff(line, axis=0)
+    length = np.hypot(*step.T)
+    moving = length > 0.0
+    if not moving.any():
+        return np.repeat(line[:1], 2, axis=0)
+    start, step, length = line[:-1][moving], step[moving], length[moving]
+    pieces = np.maximum(np.ceil(length / spacing), 1.0).astype(np.int64)
+    index = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    share = index / np.repeat(pieces, pieces)
+    points = np.repeat(start, pieces, axis=0) + share[:, np.newaxis] * np.repeat(step, pieces, axis=0)
+    return np.concatenate([points, line[-1:]])

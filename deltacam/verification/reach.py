@@ -1,0 +1,64 @@
+"""Checks of where the tool is: possible poses, the sheet's plane and edges, the park position, the margins."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from deltacam.model import Array, Check
+from deltacam.verification.evidence import Evidence, in_chunks
+from deltacam.verification.measure import MICROMETRE, ROUNDING_DEG, at_most
+
+
+def poses(evidence: Evidence) -> Check:
+    """The arms close at every tick with the elbows outwards; without that there is no position to check."""
+    tick, why = evidence.impossible
+    return Check("possible poses", not why, tick=tick if why else None, where=why)
+
+
+def reach_margin(evidence: Evidence) -> Check:
+    """No arm is at the edge of its reach; the margin is a share of the upper arm, and at least 0."""
+    margin = in_chunks(lambda points: evidence.robot.reach_margin(points).min(axis=1), evidence.tool)
+    row = int(np.argmin(margin))
+    worst = float(margin[row])
+    return Check("reach margin (at least)", worst > 0.0, worst, 0.0, "", row, evidence.place(row))
+
+
+def pressure_angle(evidence: Evidence) -> Check:
+    """Both pressure angles of every arm, which grow to 90 degrees at a singularity."""
+
+    def largest(points: Array) -> Array:
+        mu1, mu2 = evidence.robot.pressure_angles(points)
+        return np.asarray(np.degrees(np.maximum(mu1, mu2).max(axis=1)))
+
+    limit = float(np.degrees(evidence.robot.workspace.max_pressure_angle)) + ROUNDING_DEG
+    return at_most(evidence, "pressure angle", in_chunks(largest, evidence.tool), limit, "deg")
+
+
+def forearm_swing(evidence: Evidence) -> Check:
+    """How far the forearms lean out of their arms' planes; where the robot gives no limit, 90 degrees."""
+    swing = in_chunks(lambda points: np.degrees(evidence.robot.forearm_swing(points).max(axis=1)), evidence.tool)
+    stated = evidence.robot.workspace.max_forearm_swing
+    limit = 90.0 if stated is None else float(np.degrees(stated))
+    return at_most(evidence, "forearm swing", swing, limit + ROUNDING_DEG, "deg")
+
+
+def sheet_plane(evidence: Evidence) -> Check:
+    """The tool stays in the plane of the placement, which is the robot's sheet."""
+    z = evidence.tool[:, 2]
+    planes = (evidence.program.placement.z, evidence.robot.workspace.sheet_z)
+    off = np.maximum(np.abs(z - planes[0]), np.abs(z - planes[1]))
+    return at_most(evidence, "sheet plane", off * 1e6, MICROMETRE * 1e6, "um")
+
+
+def sheet_area(evidence: Evidence) -> Check:
+    """The tool stays on the sheet."""
+    outside = evidence.robot.workspace.excess(evidence.tool[:, :2])
+    return at_most(evidence, "sheet area", outside * 1e3, MICROMETRE * 1e3, "mm outside")
+
+
+def park(evidence: Evidence) -> Check:
+    """The program starts and ends at the robot's park position."""
+    ends = np.array([0, len(evidence.tool) - 1])
+    target = (*evidence.robot.workspace.park, evidence.robot.workspace.sheet_z)
+    off = np.linalg.norm(evidence.tool[ends] - target, axis=1)
+    return at_most(evidence, "park position", off * 1e6, MICROMETRE * 1e6, "um", ticks=ends)

@@ -1,0 +1,29 @@
+"""The report as JSON, for programs: the same keys in the same order every time, and never nan."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import Any
+
+from deltacam.model import Report
+
+
+def to_json(report: Report) -> str:
+    """The report as one JSON object, indented, ASCII, with a line feed at its end.
+
+    Raises:
+        ValueError: a number is not finite, which no check may give.
+    """
+    return json.dumps(to_dict(report), indent=2, allow_nan=False) + "\n"
+
+
+def to_dict(report: Report) -> dict[str, Any]:
+    """The report as dicts, lists, texts, numbers, booleans and None."""
+    return {
+        "passed": report.passed,
+        "checks": [asdict(check) for check in report.checks],
+        "summary": dict(report.summary),
+        "ledger": [asdict(entry) for entry in report.ledger],
+        "findings": [asdict(finding) for finding in report.findings],
+    }

@@ -1,0 +1,53 @@
+"""Verification: everything is recomputed from the setpoints, the robot and the drawing.
+
+Nothing of the planner is used here: not its paths, not its time law, not its kerf offset.
+"""
+
+from __future__ import annotations
+
+from deltacam.model import Check, Drawing, Finding, Mode, Report
+from deltacam.program.program import Program
+from deltacam.robot.robot import Robot
+from deltacam.verification.checks import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
+from deltacam.verification.contours import compare, same_drawing
+from deltacam.verification.evidence import Evidence, gather
+from deltacam.verification.summary import summarize
+
+
+def verify(program: Program, *, drawing: Drawing | None, robot: Robot | None = None) -> Report:
+    """Check a program against its robot, its process and its drawing.
+
+    Args:
+        program: as read from a file, or new.
+        drawing: what it should cut; None leaves the contours unchecked, which the report says.
+        robot: the machine that it will run on; None takes the one in the program.
+
+    Returns:
+        every check with its worst value, limit, tick and place. The findings say which checks were not made.
+    """
+    evidence = gather(program, robot or program.robot)
+    checks = [check(evidence) for check in OF_SETPOINTS]
+    findings = list(drawing.findings) if drawing else []
+    if drawing:
+        checks.append(same_drawing(program, drawing))
+    if evidence.impossible[1]:
+        findings.append(Finding("the arms cannot close at some tick, so that nothing about positions was checked"))
+    else:
+        checks += [check(evidence) for check in OF_POSITIONS]
+        checks += _contour_checks(evidence, drawing, findings)
+    ledger = drawing.ledger if drawing else ()
+    return Report(tuple(checks), summarize(evidence, drawing, checks), ledger, tuple(findings))
+
+
+def _contour_checks(evidence: Evidence, drawing: Drawing | None, findings: list[Finding]) -> list[Check]:
+    """The checks of the contours; where they are not made, ``findings`` gets the reason."""
+    if evidence.program.mode is Mode.FRAME:
+        findings.append(Finding("a frame program cuts nothing: its path was not compared with the drawing"))
+        return []
+    if drawing is None:
+        file = evidence.program.drawing.file
+        what = "not checked without the drawing: deviation, completeness and order of the cuts"
+        findings.append(Finding(what, hint=f"give the drawing: --drawing {file}"))
+        return []
+    comparison = compare(evidence, drawing)
+    return [check(comparison) for check in OF_CONTOURS]
