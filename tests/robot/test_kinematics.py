@@ -1,10 +1,11 @@
 """Kinematics, against published numbers, another implementation, and numerical differences."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from deltacam.errors import RobotError
@@ -162,6 +163,27 @@ def test_a_point_too_near_or_too_far_aside_is_refused() -> None:
     with pytest.raises(RobotError, match=r"1 of 2 .*mm too far for arm") as caught:
         kinematics.inverse(geometry, [[0.0, 0.0, -0.65], [0.9, 0.0, -0.1]])
     assert caught.value.where == "point 1"
+
+
+@given(st.floats(-0.6, 0.6), st.floats(-0.6, 0.6), st.floats(-1.2, -0.1))
+def test_moving_the_point_by_the_missing_length_brings_it_to_the_edge_of_reach(x: float, y: float, z: float) -> None:
+    geometry = ROBOTS["delta-300"].geometry
+    try:
+        kinematics.inverse(geometry, [[x, y, z]])
+    except RobotError as problem:
+        amount, words = re.findall(r"([0-9.]+) mm (too far|too near) for arm", problem.what)[0]
+        arm = int(problem.what[-1]) - 1
+    else:
+        return
+    azimuth = geometry.azimuths[arm]
+    u, w = np.array([np.cos(azimuth), np.sin(azimuth), 0.0]), np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+    assume(
+        abs(np.array([x, y, z]) @ w) < geometry.forearm
+    )  # else the arm's plane is too far, and no motion in it helps
+    joint = geometry.offset * u + (np.array([x, y, z]) @ w) * w  # beside the joint, in the point's own plane
+    away = np.array([x, y, z]) - joint
+    away *= 1.0 + (-1.0 if words == "too far" else 1.0) * float(amount) * 1e-3 / np.linalg.norm(away)
+    assert abs(kinematics.reach_margin(geometry, [joint + away])[0, arm]) < 1e-5
 
 
 @pytest.mark.parametrize("shape", [(3,), (2, 2), (1, 3, 3)])

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from deltacam.model import Array
-from deltacam.robot.limits import derive_max_acceleration, derive_max_speed
+from deltacam.robot import kinematics
+from deltacam.robot.dimensions import DeltaGeometry
+from deltacam.robot.limits import derive_max_acceleration, derive_max_speed, joint_acceleration_demand
 from deltacam.robot.reader import load_robot, profile_names
 from deltacam.robot.robot import Robot
 
@@ -49,6 +51,22 @@ def test_some_motion_of_the_rated_tool_needs_the_derived_limits(robot: Robot) ->
     assert 0.995 * robot.joints.max_speed[0] <= worst[0].max() <= robot.joints.max_speed[0]
     needed = (worst[1] + worst[2]).max()
     assert 0.995 * robot.joints.max_acceleration[0] <= needed <= robot.joints.max_acceleration[0]
+
+
+def test_the_acceleration_demand_is_the_largest_over_all_directions_in_every_pose() -> None:
+    """With short forearms and raised arms too, where motion at speed turns a joint the other way."""
+    geometry = DeltaGeometry(0.10, 0.06, 0.10, 0.14)
+    p = kinematics.forward(geometry, np.radians(RNG.uniform(10, 40, (200, 3))))
+    demand = joint_acceleration_demand(geometry, p, speed=2.0, acceleration=3.0)
+    angles = np.linspace(0, np.pi, 181)
+    v, a = directions(angles, 2.0), directions(angles, 3.0)
+    zero = np.zeros((len(p), 3))
+    turning = np.stack([kinematics.path_derivatives(geometry, p, zero + row, zero)[2] for row in v])
+    pushing = np.stack([kinematics.path_derivatives(geometry, p, zero, zero + row)[2] for row in a])
+    assert (-turning.min(axis=0) > turning.max(axis=0)).any()
+    found = np.abs(turning).max(axis=0) + np.abs(pushing).max(axis=0)
+    assert (found <= demand * (1 + 1e-12)).all()
+    assert found == pytest.approx(demand, rel=1e-3)
 
 
 def test_the_limits_of_delta_300_are_the_reference_numbers() -> None:
