@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -35,12 +35,17 @@ def readonly(values: npt.ArrayLike, *, columns: int | None = None) -> Array:
     return array
 
 
+STRAIGHT: Final = 1e-12
+"""Bulge of an arc that is a line: over a chord of 1 m it would rise by half a picometre."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
     """Lines and circular arcs joined end to end in the sheet plane.
 
     Segment i runs from ``points[i]`` to the next point; its bulge is the tangent of a quarter of the angle that it
-    turns through: 0 for a line, 1 for half a circle counter-clockwise, -1 for half a circle clockwise.
+    turns through: 0 for a line, 1 for half a circle counter-clockwise, -1 for half a circle clockwise. A bulge below
+    ``STRAIGHT`` is kept as 0.
 
     Attributes:
         points: (N, 2) m; a closed curve does not repeat its first point.
@@ -54,7 +59,8 @@ class Curve:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", readonly(self.points, columns=2))
-        object.__setattr__(self, "bulges", readonly(self.bulges))
+        bulges = np.asarray(self.bulges, dtype=np.float64)
+        object.__setattr__(self, "bulges", readonly(np.where(np.abs(bulges) < STRAIGHT, 0.0, bulges)))
         if len(self.bulges) != len(self.points) - (not self.closed):
             raise ValueError(f"{len(self.points)} points do not go with {len(self.bulges)} bulges")
 

@@ -66,7 +66,7 @@ def _offset_one(contour: Contour, kerf: float) -> KerfResult:
         return KerfResult((_cut(contour, contour.curve),), ())
     shift = -kerf / 2.0 if contour.is_hole else kerf / 2.0
     points, segment = curves.flatten(contour.curve, FLATTENING)
-    region = shapely.Polygon(points).buffer(shift, quad_segs=_quad_segments(kerf / 2.0))
+    region = shapely.Polygon(points if len(points) >= 3 else None).buffer(shift, quad_segs=_quad_segments(kerf / 2.0))
     parts = [shapely.geometry.polygon.orient(part) for part in getattr(region, "geoms", [region])]
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors) if ring.length > SMALLEST_RING]
     if not rings:
@@ -109,8 +109,8 @@ def _refuse_collisions(contours: Sequence[Contour], cuts: Sequence[Cut], kerf: f
     clearance = kerf / 2.0 - CLEARANCE_SLACK
     if clearance <= 0.0 or len(contours) < 2:
         return
-    drawn = np.array([_ring(contour.curve) for contour in contours])
-    paths = np.array([_ring(cut.curve) for cut in cuts])
+    drawn = np.array([_outline(contour.curve) for contour in contours])
+    paths = np.array([_outline(cut.curve) for cut in cuts])
     path, other = shapely.STRtree(drawn).query(paths, predicate="dwithin", distance=clearance)
     numbers = np.array([contour.number for contour in contours])
     hit = numbers[other] != np.array([cut.contour for cut in cuts])[path]
@@ -128,8 +128,9 @@ def _refuse_collisions(contours: Sequence[Contour], cuts: Sequence[Cut], kerf: f
     )
 
 
-def _ring(curve: Curve) -> shapely.LinearRing:
-    return shapely.LinearRing(curves.flatten(curve, FLATTENING)[0])
+def _outline(curve: Curve) -> shapely.LineString:
+    points, _ = curves.flatten(curve, FLATTENING)
+    return shapely.LineString(np.concatenate([points, points[:1]]))
 
 
 def _place(point: Array) -> str:

@@ -87,7 +87,7 @@ class Precedence:
 
 
 def _nearest_neighbour(cuts: Sequence[Cut], rule: Precedence, start: tuple[float, float]) -> IntArray:
-    lines = np.array([shapely.LinearRing(_flat(cut)) for cut in cuts])
+    lines = np.array([_outline(cut) for cut in cuts])
     waiting = np.array([len(inside) for inside in rule.before])
     ready = waiting == 0
     place = np.array(start)
@@ -104,9 +104,9 @@ def _nearest_neighbour(cuts: Sequence[Cut], rule: Precedence, start: tuple[float
     return np.array(sequence)
 
 
-def _flat(cut: Cut) -> Array:
+def _outline(cut: Cut) -> shapely.LineString:
     points, _ = curves.flatten(cut.curve, _FLATTENING)
-    return points if len(points) >= 3 else curves.flatten(cut.curve, _FLATTENING / 100.0)[0]
+    return shapely.LineString(np.concatenate([points, points[:1]]))
 
 
 def _nearest_place(cut: Cut, place: Array) -> Array:

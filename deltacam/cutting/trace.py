@@ -18,11 +18,11 @@ from deltacam.geometry import curve as curves
 from deltacam.geometry.element import Element, meeting_points, shifted, turn_between
 from deltacam.model import Array, Curve, IntArray
 
-FIT: Final = 2e-6
-"""Largest distance, m, of the traced path from the polyline that it replaces."""
+FIT: Final = 1e-6
+"""Largest error, m, in the distance of a traced path from the drawn contour."""
 
 _SAME_POINT: Final = 5e-7
-_SEARCH: Final = 2e-5
+_SEARCH: Final = 1e-4
 _SHORTEST: Final = 1e-8
 
 
@@ -89,11 +89,12 @@ def trace_ring(source: Source, ring: Array) -> Curve:
         ring: (K, 2) m, one ring of the buffered contour, the buffered region to its left, first point not repeated.
 
     Returns:
-        a closed curve within ``FIT`` of ``ring``; where tracing does not get there, the lines of ``ring`` themselves.
+        a closed curve whose distance from the contour is right within ``FIT``; where tracing does not get there, the
+        lines of ``ring`` themselves.
     """
     labels, first = _runs(source, _labels(source, ring))
     traced = _assemble(source, labels, first, ring) if len(labels) > 1 else None
-    if traced is None or not _matches(traced, ring):
+    if traced is None or not _matches(source, traced, ring):
         traced = curves.polygon(ring)
     return traced if curves.signed_area(traced) > 0.0 else curves.reverse(traced)
 
@@ -103,17 +104,23 @@ def _edges(points: Array) -> Array:
     return np.asarray(shapely.linestrings(np.stack([points, np.roll(points, -1, axis=0)], axis=1)))
 
 
+def _nearest(source: Source, points: Array) -> tuple[IntArray, Array, Array]:
+    """The segment nearest to each point, how far along it the nearest place is, and how far away, (N,) each."""
+    chord = source.chords.query_nearest(shapely.points(points), all_matches=False)[1]
+    count = len(source.curve.bulges)
+    # The nearest chord tells the segment, but for points beside its ends.
+    choices = (source.segment[chord][None, :] + np.array([[0], [-1], [1]])) % count
+    places = [curves.project(source.curve, choice, points) for choice in choices]
+    best = np.argmin([gap for _, gap in places], axis=0)
+    every = np.arange(len(points))
+    distance, gap = (np.array(part)[best, every] for part in zip(*places, strict=True))
+    return choices[best, every], distance, gap
+
+
 def _labels(source: Source, ring: Array) -> IntArray:
     """The label of every edge of ``ring``, by the place on the contour that is nearest to the edge's middle."""
-    middle = 0.5 * (ring + np.roll(ring, -1, axis=0))
-    chord = source.chords.query_nearest(shapely.points(middle), all_matches=False)[1]
+    k, distance, _ = _nearest(source, 0.5 * (ring + np.roll(ring, -1, axis=0)))
     count = len(source.curve.bulges)
-    choices = (source.segment[chord][None, :] + np.array([[0], [-1], [1]])) % count
-    places = [curves.project(source.curve, choice, middle) for choice in choices]
-    best = np.argmin([gap for _, gap in places], axis=0)
-    every = np.arange(len(middle))
-    k = choices[best, every]
-    distance = np.array([place for place, _ in places])[best, every]
     after = (distance >= curves.lengths(source.curve)[k]) & (source.rounds[k] > 0.0)
     before = (distance <= 0.0) & (source.rounds[(k - 1) % count] > 0.0)
     return np.asarray(np.where(after, 2 * k + 1, np.where(before, 2 * k - 1, 2 * k)) % (2 * count))
@@ -188,11 +195,16 @@ def _assemble(source: Source, labels: list[int], first: list[int], ring: Array) 
     return Curve(points=np.array(points), bulges=np.array(bulges)) if len(points) >= 2 else None
 
 
-def _matches(traced: Curve, ring: Array) -> bool:
-    """Whether the two run within ``FIT`` of each other, seen from both."""
+def _matches(source: Source, traced: Curve, ring: Array) -> bool:
+    """Whether all of the traced path lies at the right distance from the drawn contour, and goes where ``ring`` goes.
+
+    The ring's own distance is less exact: flattening moves the tip of a sharp corner by many times the sagitta.
+    """
     flat, _ = curves.flatten(traced, FIT / 4.0)
+    middle = 0.5 * (flat + np.roll(flat, -1, axis=0))
+    off = max(np.abs(_nearest(source, points)[2] - abs(source.shift)).max() for points in (flat, middle))
     there = shapely.STRtree(_edges(ring)).query_nearest(shapely.points(flat), return_distance=True, all_matches=False)[
         1
     ]
     back = shapely.STRtree(_edges(flat)).query_nearest(shapely.points(ring), return_distance=True, all_matches=False)[1]
-    return bool(max(there.max(), back.max()) <= FIT)
+    return bool(off <= FIT and max(there.max(), back.max()) <= _SEARCH)

@@ -72,8 +72,35 @@ def fit(evaluate: Evaluate, parameters: Array, tolerance: float) -> tuple[Curve,
     bulges = np.concatenate([piece[2].bulges for piece in done])[order]
     samples, _ = _sample(evaluate, low, high, _CHECK_SAMPLES)
     error = float(_distances(_Biarcs(points, bulges), samples).max())
-    curve, slack = _merged(np.concatenate([points[:, :2].reshape(-1, 2), points[-1:, 2]]), bulges.ravel())
-    return curve, error + slack
+    places = np.concatenate([points[:, :2].reshape(-1, 2), points[-1:, 2]])
+    curve, moved = merge(Curve(points=places, bulges=bulges.ravel(), closed=False))
+    return curve, error + moved
+
+
+def merge(curve: Curve) -> tuple[Curve, float]:
+    """An open curve with neighbours on one line or circle made one, and how far that may move it, m.
+
+    Arcs are not made larger than half a turn.
+    """
+    reach, turn = curves.lengths(curve), curves.turns(curve)
+    heading, _ = curves.headings(curve)
+    kept, angles = [0], []
+    while kept[-1] < len(reach):
+        i = kept[-1]
+        bend = turn[i] / reach[i] if reach[i] > 0.0 else 0.0
+        walked, angle, j = reach[i], turn[i], i + 1
+        while j < len(reach) and abs(angle + turn[j]) <= np.pi * (1.0 + 1e-9):
+            walked += reach[j]
+            half = 0.5 * bend * walked
+            ahead = walked * np.sinc(half / np.pi) * np.array([np.cos(heading[i] + half), np.sin(heading[i] + half)])
+            if np.hypot(*(curve.points[i] + ahead - curve.points[j + 1])) > _MERGE:
+                break
+            angle += turn[j]
+            j += 1
+        kept.append(j)
+        angles.append(angle)
+    merged = Curve(points=curve.points[kept], bulges=np.tan(0.25 * np.array(angles)), closed=False)
+    return merged, _MERGE if len(angles) < len(reach) else 0.0
 
 
 def _try(evaluate: Evaluate, low: Array, high: Array, tolerance: float) -> tuple[_Biarcs, BoolArray]:
@@ -143,7 +170,8 @@ def _from_arc(start: Array, end: Array, bulge: Array, samples: Array) -> Array:
     """
     chord = end - start
     size = np.hypot(*chord.T)
-    unit = np.divide(chord, size[:, None], out=np.zeros_like(chord), where=size[:, None] > 0.0)
+    # An arc that shrank to a point has no direction; any will do to measure from its end.
+    unit = np.divide(chord, size[:, None], out=np.tile([1.0, 0.0], (len(chord), 1)), where=size[:, None] > 0.0)
     arm = samples - 0.5 * (start + end)[:, None]
     x = np.einsum("nsk,nk->ns", arm, unit)
     y = arm[..., 1] * unit[:, None, 0] - arm[..., 0] * unit[:, None, 1]
@@ -157,31 +185,3 @@ def _from_arc(start: Array, end: Array, bulge: Array, samples: Array) -> Array:
     beyond = np.abs(x) > half - y * slope
     ends = np.hypot(np.abs(x) - half, y)
     return np.asarray(np.where(beyond, ends, radial))
-
-
-def _merged(points: Array, bulges: Array) -> tuple[Curve, float]:
-    """The open curve with neighbours on one line or circle made one, and how far that may move it, m."""
-    raw = Curve(points=points, bulges=bulges, closed=False)
-    reach, turn = curves.lengths(raw), curves.turns(raw)
-    heading, _ = curves.headings(raw)
-    kept, angles = [0], [0.0]
-    merged = False
-    i = 0
-    while i < len(reach):
-        bend = turn[i] / reach[i] if reach[i] > 0.0 else 0.0
-        walked, angle, j = reach[i], turn[i], i + 1
-        while j < len(reach) and abs(angle + turn[j]) <= np.pi * (1.0 + 1e-9):
-            walked += reach[j]
-            half = 0.5 * bend * walked
-            step = walked * np.sinc(half / np.pi)
-            ahead = points[i] + step * np.array([np.cos(heading[i] + half), np.sin(heading[i] + half)])
-            if np.hypot(*(ahead - points[j + 1])) > _MERGE:
-                break
-            angle += turn[j]
-            j += 1
-        merged |= j > i + 1
-        kept.append(j)
-        angles.append(angle)
-        i = j
-    curve = Curve(points=points[kept], bulges=np.tan(0.25 * np.array(angles[1:])), closed=False)
-    return curve, _MERGE if merged else 0.0

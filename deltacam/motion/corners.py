@@ -22,6 +22,7 @@ SHARPEST_PASSED: Final = np.radians(2.0)
 _TANGENT: Final = 1e-9
 _SHORTEST_SEGMENT: Final = 1e-6
 _SHORTEST_REACH: Final = 1e-7
+_SMALLEST_RADIUS: Final = 1e-6
 _LONGEST_REACH: Final = 2e-3
 _LARGEST_TURN: Final = 0.2
 _SHARE: Final = 0.9
@@ -30,6 +31,7 @@ _SHRINK: Final = 0.6
 _ROUNDS: Final = 24
 _NEWTON_STEPS: Final = 6
 _CONVERGED: Final = 1e-11
+_ROUNDING: Final = 1.0 + 1e-9
 
 
 def pieces(closed: Curve, *, corner: Corner, deviation: float) -> tuple[Curve, ...]:
@@ -103,7 +105,7 @@ def _blend(curve: Curve, angle: Array, wanted: BoolArray, deviation: float) -> _
     before, after, turn = np.zeros_like(reach), np.zeros_like(reach), np.zeros_like(reach)
     for _ in range(_ROUNDS):
         s_in, s_out, t, off, ok = _solve(legs, angle, side * radius, reach)
-        good = open_ & ok & (off <= deviation) & (s_in <= limit_in) & (s_out <= limit_out)
+        good = open_ & ok & (radius >= _SMALLEST_RADIUS) & (off <= deviation * _ROUNDING) & (s_in <= limit_in) & (s_out <= limit_out)
         before, after, turn = np.where(good, s_in, before), np.where(good, s_out, after), np.where(good, t, turn)
         found |= good
         open_ &= ~good

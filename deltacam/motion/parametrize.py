@@ -20,8 +20,11 @@ from deltacam.motion.path import Path
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
-SPACING: Final = 1e-3
+SPACING: Final = 5e-4
 """Longest interval between gridpoints, m."""
+
+STEP: Final = 0.1
+"""Largest turn of an arc between gridpoints, rad: the best speed on an arc changes with the angle."""
 
 INTERVALS: Final = 4
 """Fewest intervals per line or arc."""
@@ -116,7 +119,8 @@ class _Grid:
 
     @classmethod
     def over(cls, path: Path) -> _Grid:
-        count = np.maximum(INTERVALS, np.ceil(path.length / SPACING)).astype(np.int64)
+        turn = path.length * np.abs(path.curvature)
+        count = np.maximum(INTERVALS, np.ceil(np.maximum(path.length / SPACING, turn / STEP))).astype(np.int64)
         segment = np.repeat(np.arange(len(count)), count)
         index = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
         width = (path.length / count)[segment]

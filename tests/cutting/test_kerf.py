@@ -1,0 +1,171 @@
+"""The kerf path, against distances and areas that need no offsetting."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from deltacam.cutting import trace
+from deltacam.cutting.kerf import offset
+from deltacam.errors import InfeasibleError
+from deltacam.geometry import curve as curves
+from deltacam.model import Curve
+from tests.strategies import contour, rectangle, slot, star_curves
+
+
+def line(curve: Curve) -> shapely.LinearRing:
+    return shapely.LinearRing(curves.flatten(curve, 1e-7)[0])
+
+
+def simple(curve: Curve) -> bool:
+    return bool(line(curve).is_simple) and curves.signed_area(curve) > 1e-7
+
+
+@settings(max_examples=150, deadline=None)
+@given(star_curves(), st.floats(5e-5, 1.5e-3), st.booleans())
+def test_the_cut_runs_half_a_kerf_beside_the_drawn_line_on_the_waste_side(
+    curve: Curve, kerf: float, hole: bool
+) -> None:
+    assume(simple(curve))
+    drawn = line(curve)
+    try:
+        cuts = offset([contour(curve, depth=int(hole))], kerf=kerf).cuts
+    except InfeasibleError:
+        assert hole
+        assert shapely.Polygon(drawn).buffer(-kerf / 2).length < 1e-4
+        return
+    for cut in cuts:
+        points, _ = curves.flatten(cut.curve, 1e-7)
+        distance = shapely.distance(shapely.points(points), drawn)
+        assert np.abs(distance - kerf / 2).max() < 2.5e-6
+        inside = shapely.contains_xy(shapely.Polygon(drawn), points)
+        assert inside.all() if hole else not inside.any()
+
+
+@settings(max_examples=100, deadline=None)
+@given(star_curves(), st.floats(5e-5, 1.5e-3))
+def test_the_cut_goes_all_the_way_around(curve: Curve, kerf: float) -> None:
+    assume(simple(curve))
+    (cut, *rest) = offset([contour(curve)], kerf=kerf).cuts
+    region = shapely.Polygon(line(curve)).buffer(kerf / 2, quad_segs=200)
+    total = sum(curves.length(c.curve) for c in (cut, *rest))
+    assert total == pytest.approx(region.length, rel=2e-4)
+
+
+@settings(max_examples=100, deadline=None)
+@given(star_curves(), st.floats(5e-5, 5e-4), st.booleans())
+def test_every_path_is_traced_back_to_the_lines_and_arcs_of_the_drawing(curve: Curve, kerf: float, hole: bool) -> None:
+    assume(simple(curve))
+    try:
+        cuts = offset([contour(curve, depth=int(hole))], kerf=kerf).cuts
+    except InfeasibleError:
+        assume(False)
+    # At most the segments, a round at each corner, and a split of each where it turns by more than half.
+    assert all(len(cut.curve.points) <= 4 * len(curve.points) + 4 for cut in cuts)
+
+
+def test_a_convex_outline_grows_as_steiner_says() -> None:
+    square = rectangle(0.06, 0.04)
+    (cut,) = offset([contour(square)], kerf=2e-4).cuts
+    assert curves.signed_area(cut.curve) == pytest.approx(0.06 * 0.04 + 0.2 * 1e-4 + math.pi * 1e-8, rel=1e-9)
+    assert curves.length(cut.curve) == pytest.approx(0.2 + 2 * math.pi * 1e-4, rel=1e-9)
+
+
+def test_a_circle_stays_a_circle() -> None:
+    ring = curves.circle(np.array([0.1, -0.05]), 0.02)
+    for depth, radius in ((0, 0.0201), (1, 0.0199)):
+        (cut,) = offset([contour(ring, depth=depth)], kerf=2e-4).cuts
+        assert len(cut.curve.points) == 2
+        assert np.hypot(*(cut.curve.points - [0.1, -0.05]).T) == pytest.approx(radius, abs=1e-12)
+        assert cut.curve.bulges == pytest.approx([1.0, 1.0])
+
+
+def test_tangent_lines_and_arcs_stay_tangent() -> None:
+    for depth in (0, 1):
+        (cut,) = offset([contour(slot(0.04, 0.01), depth=depth)], kerf=2e-4).cuts
+        assert len(cut.curve.points) == 4
+        assert curves.corner_angles(cut.curve) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_no_kerf_means_the_drawn_line() -> None:
+    drawn = contour(slot(0.04, 0.01))
+    assert offset([drawn], kerf=0.0).cuts[0].curve is drawn.curve
+
+
+def test_a_swallowed_hole_is_refused_with_its_place() -> None:
+    hole = contour(curves.circle(np.array([0.01, 0.02]), 1e-4), number=7, depth=1)
+    with pytest.raises(InfeasibleError) as caught:
+        offset([hole], kerf=3e-4)
+    assert "swallows" in caught.value.what
+    assert "contour 7" in caught.value.where
+    assert "(10.000, 20.000) mm" in caught.value.where
+    assert "--kerf" in caught.value.hint
+
+
+def test_a_hole_with_a_narrow_neck_becomes_two_cuts_and_a_finding() -> None:
+    points = [
+        (0, 0),
+        (10, 0),
+        (10, 4.9),
+        (20, 4.9),
+        (20, 0),
+        (30, 0),
+        (30, 10),
+        (20, 10),
+        (20, 5.1),
+        (10, 5.1),
+        (10, 10),
+        (0, 10),
+    ]
+    result = offset([contour(curves.polygon(np.array(points) / 1e3), depth=1)], kerf=3e-4)
+    assert len(result.cuts) == 2
+    (finding,) = result.findings
+    assert "splits into 2 cuts" in finding.what
+    assert "(5.00" in finding.what
+    assert "(24.99" in finding.what
+
+
+def test_a_slit_narrower_than_the_kerf_is_reported() -> None:
+    points = [
+        (0, 0),
+        (30, 0),
+        (30, 9.95),
+        (10, 9.95),
+        (10, 5),
+        (5, 5),
+        (5, 15),
+        (10, 15),
+        (10, 10.05),
+        (30, 10.05),
+        (30, 20),
+        (0, 20),
+    ]
+    result = offset([contour(curves.polygon(np.array(points) / 1e3))], kerf=3e-4)
+    assert len(result.cuts) == 2
+    assert "splits" in result.findings[0].what
+
+
+def test_parts_nearer_than_the_kerf_are_refused_with_the_place() -> None:
+    left, right = rectangle(0.01, 0.01), rectangle(0.01, 0.01, at=(0.0101, 0.0))
+    with pytest.raises(InfeasibleError) as caught:
+        offset([contour(left, number=1), contour(right, number=2)], kerf=2.5e-4)
+    assert "contour 2" in caught.value.what + caught.value.where
+    assert "(10." in caught.value.where
+    assert offset([contour(left, number=1), contour(right, number=2)], kerf=0.9e-4).findings == ()
+
+
+def test_an_island_nearer_than_the_kerf_to_its_hole_is_refused() -> None:
+    hole = contour(curves.circle(np.zeros(2), 0.01005), number=1, depth=1)
+    island = contour(curves.circle(np.zeros(2), 0.01), number=2, depth=2, parent=1)
+    with pytest.raises(InfeasibleError, match="wider than the gap"):
+        offset([hole, island], kerf=2e-4)
+
+
+def test_a_ring_that_cannot_be_traced_falls_back_to_its_own_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(trace, "_assemble", lambda *_: None)
+    (cut,) = offset([contour(curves.circle(np.zeros(2), 0.02))], kerf=2e-4).cuts
+    assert len(cut.curve.points) > 50
+    assert np.hypot(*cut.curve.points.T) == pytest.approx(0.0201, abs=2e-6)

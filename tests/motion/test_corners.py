@@ -1,0 +1,93 @@
+"""Corners, against distances measured by shapely."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from deltacam.geometry import curve as curves
+from deltacam.model import Curve
+from deltacam.motion.corners import pieces
+from tests.strategies import rectangle, slot, star_curves
+
+DEVIATION = 17e-6
+
+
+def flat(curve: Curve) -> np.ndarray:
+    points, _ = curves.flatten(curve, 1e-8)
+    return np.concatenate([points, points[:1]]) if curve.closed else points
+
+
+def worst_kink(curve: Curve) -> float:
+    return float(np.abs(curves.corner_angles(curve)).max(initial=0.0))
+
+
+@settings(max_examples=150, deadline=None)
+@given(star_curves(low=1e-3, high=40e-3), st.floats(1e-6, 1e-4))
+def test_rounded_corners_leave_a_tangent_path_within_the_deviation(curve: Curve, deviation: float) -> None:
+    assume(curves.lengths(curve).min() > 1e-5)
+    parts = pieces(curve, corner="round", deviation=deviation)
+    drawn = shapely.LineString(flat(curve))
+    driven = np.concatenate([flat(part) for part in parts])
+    assert shapely.distance(shapely.points(driven), drawn).max() <= deviation + 2e-8
+    assert shapely.distance(shapely.points(flat(curve)), shapely.LineString(driven)).max() <= deviation + 2e-8
+    assert max(worst_kink(part) for part in parts) < 1e-5
+    assert driven[0] == pytest.approx(curve.points[0])
+    assert driven[-1] == pytest.approx(curve.points[0])
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_polygons_of_every_angle_and_size_become_drivable(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    turns = np.radians(rng.uniform(1.0, 179.0, 25)) * rng.choice([-1.0, 1.0], 25)
+    edges = 10.0 ** rng.uniform(np.log10(5e-5), -1.0, 25)
+    heading = np.cumsum(turns)
+    points = np.cumsum(edges[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1), axis=0)
+    parts = pieces(curves.polygon(points), corner="round", deviation=DEVIATION)
+    assert sum(curves.length(part) for part in parts) <= edges.sum() + float(np.hypot(*(points[-1] - points[0])))
+    assert all(worst_kink(part) < 1e-5 and curves.lengths(part).min() > 0.0 for part in parts)
+    for before, after in zip(parts[:-1], parts[1:], strict=True):
+        assert before.points[-1] == pytest.approx(after.points[0], abs=1e-12)
+
+
+def test_a_right_angle_gets_the_largest_arc_that_the_deviation_allows() -> None:
+    square = curves.start_at(rectangle(0.06, 0.04), 0, 0.03)
+    (part,) = pieces(square, corner="round", deviation=DEVIATION)
+    radius = 1.0 / np.abs(curves.curvatures(part)).max()
+    assert radius == pytest.approx(DEVIATION / (math.sqrt(2.0) - 1.0), rel=1e-6)
+    assert np.count_nonzero(part.bulges) == 4
+
+
+def test_stopping_keeps_the_corner_and_ends_a_piece_there() -> None:
+    square = curves.start_at(rectangle(0.06, 0.04), 0, 0.03)
+    parts = pieces(square, corner="stop", deviation=DEVIATION)
+    assert [part.points.tolist() for part in parts][1:4] == [
+        [[0.06, 0.0], [0.06, 0.04]],
+        [[0.06, 0.04], [0.0, 0.04]],
+        [[0.0, 0.04], [0.0, 0.0]],
+    ]
+
+
+def test_stopping_passes_what_is_no_corner() -> None:
+    polygon = curves.polygon(np.array([[np.cos(a), np.sin(a)] for a in np.radians(np.arange(360))]) * 0.03)
+    assert len(pieces(polygon, corner="stop", deviation=DEVIATION)) == 1
+    assert len(pieces(slot(0.04, 0.01), corner="stop", deviation=DEVIATION)) == 1
+
+
+def test_a_path_that_turns_back_on_itself_stops_there() -> None:
+    spike = curves.polygon(np.array([[0.0, 0.0], [0.02, 0.0], [0.0, 1e-9], [-0.01, 0.01]]))
+    assert len(pieces(spike, corner="round", deviation=DEVIATION)) == 3  # it turns back at two corners
+
+
+def test_no_deviation_means_a_stop_at_every_corner() -> None:
+    assert len(pieces(rectangle(0.06, 0.04), corner="round", deviation=0.0)) == 4
+
+
+def test_slivers_are_left_out() -> None:
+    points = np.array([[0.0, 0.0], [0.03, 0.0], [0.03, 2e-7], [0.03, 0.03], [0.0, 0.03], [-3e-7, 1e-7]])
+    (part,) = pieces(curves.polygon(points), corner="round", deviation=DEVIATION)
+    assert curves.lengths(part).min() > 1e-5
+    assert len(part.points) == 8
