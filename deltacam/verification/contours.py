@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from deltacam.model import Array, Check, Contour, Drawing, IntArray
 from deltacam.program.program import Program
 from deltacam.verification.evidence import Evidence, Run, to_sheet, tool_points
+from deltacam.verification.interpolate import between, motion
 from deltacam.verification.kerf_path import ACCURACY, rings, sharp_corners
 from deltacam.verification.measure import at_most
 from deltacam.verification.near import Lines
@@ -112,7 +113,7 @@ def deviation_between(comparison: Comparison) -> Check:
     limit = process.tolerance + process.chord_tolerance
     rows = [_ticks(target.runs, including_end=False) for target in comparison.targets]
     cut = np.concatenate([np.empty(0, dtype=np.int64), *rows])
-    points, (row, why) = tool_points(evidence.robot, _between(evidence, cut))
+    points, (row, why) = tool_points(evidence.robot, between(evidence, cut, 0.5))
     if why:
         return Check("deviation between ticks", False, tick=int(cut[row]), where=why)
     places = np.zeros((len(evidence.sheet), 2))
@@ -173,27 +174,19 @@ def _ticks(runs: tuple[Run, ...], *, including_end: bool) -> IntArray:
 
 
 def _worst_distance(comparison: Comparison, name: str, rows: list[IntArray], places: Array, limit: float) -> Check:
-    """The check that the ``places`` (N, 2) at the ``rows`` of each target are within ``limit`` m of its path."""
+    """The check that the ``places`` (N, 2) at the ``rows`` of each target are within ``limit`` m of its path.
+
+    What the reader lost of the drawing counts as distance, because the limit is from the exact kerf path.
+    """
     found = [np.empty(0)]
     ticks = [np.empty(0, dtype=np.int64)]
     for target, cut in zip(comparison.targets, rows, strict=True):
         if target.path is not None and len(cut):
             found.append(target.path.distance(places[cut], exact_above=limit / 2.0))
             ticks.append(cut)
-    values, at = np.concatenate(found) * 1e6, np.concatenate(ticks)
+    values = (np.concatenate(found) + comparison.drawing.conversion_error) * 1e6
+    at = np.concatenate(ticks)
     return at_most(comparison.evidence, name, values, (limit + ACCURACY) * 1e6, "um", ticks=at)
-
-
-def _between(evidence: Evidence, rows: IntArray) -> Array:
-    """The joint angles half-way from ``rows`` (M,) to the next rows as the controller interpolates, (M, 3) rad."""
-    q = evidence.program.q
-    middle = (q[rows] + q[rows + 1]) / 2.0
-    if evidence.robot.controller.interpolation == "cubic":
-        # Hermite: the slopes m are central differences, and the middle moves by dt (m0 - m1) / 8.
-        last = len(q) - 1
-        slope = q[np.minimum(rows + 1, last)] - q[np.maximum(rows - 1, 0)]
-        middle += (slope - (q[np.minimum(rows + 2, last)] - q[rows])) / 16.0
-    return np.asarray(middle)
 
 
 def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tuple[float, float]]:
@@ -203,7 +196,7 @@ def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tupl
     samples, share = target.path.samples, target.path.share
     if not target.runs:
         return float(share.sum()), (float(samples[0, 0]), float(samples[0, 1]))
-    cut = Lines([evidence.sheet[run.first : run.end + 1] for run in target.runs], closed=False)
+    cut = Lines([motion(evidence, run, near / 8.0) for run in target.runs], closed=False)
     distance = cut.distance(samples, exact_above=near / 2.0)
     left = np.flatnonzero(distance > near)
     left = left[~_in_rounded_corner(target, samples[left], distance[left], near)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import zip_longest
 from typing import Any, Final
 
 from deltacam.model import Check, Report
@@ -17,7 +18,7 @@ def to_text(report: Report) -> str:
     rate = report.summary["program"]["rate_hz"]
     failed = [check for check in report.checks if not check.passed]
     lines = [_verdict(report, failed), *_figures(report.summary), ""]
-    lines += _table(failed + [check for check in report.checks if check.passed], rate)
+    lines += [*_failures(failed, rate), *_in_two_columns([check for check in report.checks if check.passed])]
     for finding in report.findings[:_MOST_FINDINGS]:
         place = f" ({plain(finding.where)})" if finding.where else ""
         hint = f"; {plain(finding.hint, longest=_WIDEST_PLACE)}" if finding.hint else ""
@@ -46,7 +47,8 @@ def _figures(summary: Mapping[str, Any]) -> list[str]:
     process = f"kerf {_number(summary['kerf_mm'])} mm, feed {_number(summary['feed_mm_s'])} mm/s"
     lines.append(f"  robot    {plain(summary['robot'])}; {plain(summary['process'])}, {process}")
     if summary["share_of_limit"]:
-        shares = ", ".join(f"{name} {100 * share:.0f} %" for name, share in summary["share_of_limit"].items())
+        used = summary["share_of_limit"].items()
+        shares = ", ".join(f"{name.removesuffix(' while cutting')} {100 * share:.0f} %" for name, share in used)
         lines.append(f"  of limit {shares}")
     return lines
 
@@ -58,24 +60,31 @@ def _part_size(summary: Mapping[str, Any]) -> str:
     return f", part {width:.2f} x {height:.2f} mm"
 
 
-def _table(checks: list[Check], rate: float) -> list[str]:
-    """One line per check, the columns aligned, numbers to the right."""
-    rows = [_cells(check, rate) for check in checks]
-    widths = [max(len(row[column]) for row in rows) for column in range(4)]
+def _failures(checks: list[Check], rate: float) -> list[str]:
+    """One line per failed check: name, worst value, limit, tick, time and place."""
+    rows = [(check.name, *_values(check)) for check in checks]
+    name, worst, limit = (max((len(row[column]) for row in rows), default=0) for column in range(3))
     lines = []
-    for verdict, name, worst, limit, place in rows:
-        figures = f"{worst:>{widths[2]}}  {limit:<{widths[3]}}"
-        lines.append(f"  {verdict:<{widths[0]}}  {name:<{widths[1]}}  {figures}  {place}".rstrip())
+    for check, row in zip(checks, rows, strict=True):
+        at = "" if check.tick is None else f"tick {check.tick} ({check.tick / rate:.4f} s) "
+        place = f"{at}{plain(check.where, longest=_WIDEST_PLACE)}"
+        lines.append(f"  FAIL  {row[0]:<{name}}  {row[1]:>{worst}} {row[2]:<{limit}}  {place}".rstrip())
     return lines
 
 
-def _cells(check: Check, rate: float) -> tuple[str, str, str, str, str]:
-    """Verdict, name, worst value, limit and place; a passed check needs no place."""
+def _in_two_columns(checks: list[Check]) -> list[str]:
+    """The passed checks with their worst values and limits, two on a line, the first half to the left."""
+    cells = [(check.name, *_values(check)) for check in checks]
+    name, worst, limit = (max((len(cell[column]) for cell in cells), default=0) for column in range(3))
+    texts = [f"  ok  {cell[0]:<{name}}  {cell[1]:>{worst}} {cell[2]:<{limit}}" for cell in cells]
+    half = (len(texts) + 1) // 2
+    return [f"{left}  {right}".rstrip() for left, right in zip_longest(texts[:half], texts[half:], fillvalue="")]
+
+
+def _values(check: Check) -> tuple[str, str]:
+    """The worst value, and the limit with its unit; empty where there was nothing to measure."""
     worst = "" if check.worst is None else _number(check.worst)
-    limit = "" if check.limit is None else f"/ {_number(check.limit)} {check.unit}".rstrip()
-    at = "" if check.tick is None else f"tick {check.tick} ({check.tick / rate:.4f} s) "
-    place = "" if check.passed else f"{at}{plain(check.where, longest=_WIDEST_PLACE)}"
-    return ("ok" if check.passed else "FAIL"), check.name, worst, limit, place
+    return worst, "" if check.limit is None else f"/ {_number(check.limit)} {check.unit}".rstrip()
 
 
 def _number(value: float) -> str:

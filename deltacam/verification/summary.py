@@ -10,6 +10,7 @@ import numpy as np
 from deltacam.geometry.curve import bounds
 from deltacam.model import Array, BlockKind, Check, Drawing
 from deltacam.verification.evidence import KINDS, MOVING_KINDS, Evidence
+from deltacam.verification.measure import DIFFERENCES
 
 _SHARES: Final = ("joint speed", "joint acceleration", "tool speed", "tool acceleration", "feed while cutting")
 
@@ -40,9 +41,9 @@ def summarize(evidence: Evidence, drawing: Drawing | None, checks: Sequence[Chec
 
 
 def _shares(checks: Sequence[Check]) -> dict[str, float]:
-    """How much of each limit the worst moment uses; 1 is all of it."""
+    """How much of each limit the worst moment uses; 1 is all of it, without what differences may have on top."""
     named = [check for check in checks if check.name in _SHARES]
-    return {check.name: check.worst / check.limit for check in named if check.worst and check.limit}
+    return {check.name: check.worst / check.limit * DIFFERENCES for check in named if check.worst and check.limit}
 
 
 def _times(evidence: Evidence) -> dict[str, float]:

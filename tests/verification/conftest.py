@@ -1,0 +1,171 @@
+"""A planner for tests only: exact offset curves, one smooth time law per piece, exact inverse kinematics.
+
+It shares nothing with deltacam's planner, so that what it makes is an independent example of a valid program.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+
+from deltacam.geometry import curve as curves
+from deltacam.model import Block, BlockKind, Contour, Curve, Drawing, Mode, Placement, Process
+from deltacam.program.program import DrawingRef, Program
+from deltacam.robot.reader import load_robot
+from deltacam.robot.robot import Robot
+
+QUARTER = np.tan(np.pi / 8)
+
+
+def rounded_rectangle(centre: tuple[float, float], width: float, height: float, radius: float) -> Curve:
+    x, y = width / 2, height / 2
+    points = [(x - radius, -y), (x, radius - y), (x, y - radius), (x - radius, y)]
+    points += [(radius - x, y), (-x, y - radius), (-x, radius - y), (radius - x, -y)]
+    return Curve(points=np.array(points) + centre, bulges=np.array([QUARTER, 0.0] * 4))
+
+
+def shapes(offset: float) -> dict[int, Curve]:
+    """The contours of the test plate, each moved ``offset`` to its kerf side: outlines grow, holes shrink."""
+    return {
+        1: rounded_rectangle((0.0, 0.0), 0.06 + 2 * offset, 0.04 + 2 * offset, 5e-3 + offset),
+        2: curves.circle(np.array([-0.015, 0.0]), 6e-3 - offset),
+        3: rounded_rectangle((0.012, 0.0), 0.022 - 2 * offset, 0.014 - 2 * offset, 3e-3 - offset),
+        4: curves.circle(np.array([0.012, 0.002]), 3e-3 + offset),
+    }
+
+
+NESTING = {1: (0, None), 2: (1, 1), 3: (1, 1), 4: (2, 3)}
+HOLES_FIRST = (4, 3, 2, 1)
+PLACED = Placement(x=0.01, y=-0.02, rotation=0.3, z=-0.65)
+
+
+def plate() -> Drawing:
+    contours = tuple(
+        Contour(number, curve, "CUT", (f"{number}A", f"{number}B"), *NESTING[number])
+        for number, curve in shapes(0.0).items()
+    )
+    return Drawing("plate.dxf", "ab" * 32, 1e-3, "mm (header)", contours, ())
+
+
+def smooth(length: float, speed: float, acceleration: float, rate: float) -> np.ndarray:
+    """Distances at every tick from rest to rest, a quintic law; peaks 1.875 L / T and 5.774 L / T^2."""
+    time = max(1.875 * length / speed, np.sqrt(5.774 * length / acceleration))
+    ticks = max(int(np.ceil(time * rate)), 1)
+    u = np.arange(ticks + 1) / ticks
+    return length * u**3 * (10.0 - 15.0 * u + 6.0 * u**2)
+
+
+def along(curve: Curve, distance: np.ndarray) -> np.ndarray:
+    """Points at ``distance`` from the start; past the end it starts again."""
+    ends = np.cumsum(curves.lengths(curve))
+    wrapped = np.where(distance >= ends[-1], distance - ends[-1], distance)
+    segment = np.minimum(np.searchsorted(ends, wrapped, side="right"), len(ends) - 1)
+    points, _ = curves.evaluate(curve, segment, wrapped - np.concatenate([[0.0], ends])[segment])
+    return points
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Builds programs for the test plate; every field is a way to build another one."""
+
+    robot: Robot
+    process: Process
+    drawing: Drawing = field(default_factory=plate)
+    placement: Placement = PLACED
+    paths: Callable[[float], dict[int, Curve]] = shapes
+    order: Sequence[int] = HOLES_FIRST
+    feed: float | None = None
+    rapid_speed: float = 0.8
+    rapid_acceleration: float = 12.0
+    mode: Mode = Mode.CUT
+    turns: float = 1.0
+    pierce_ticks: int = 20
+    z: float | None = None
+
+    def but(self, **changes: object) -> "Bench":
+        return replace(self, **changes)
+
+    def program(self) -> Program:
+        rate = self.robot.controller.rate_hz
+        paths = self.paths(self.process.kerf / 2)
+        park = self._to_sheet(np.array([self.robot.workspace.park]))[0]
+        stretches: list[tuple[BlockKind, int | None, np.ndarray]] = []
+        here = park
+        for number in self.order:
+            path = paths[number]
+            stretches.append((BlockKind.RAPID, None, self._line(here, path.points[0], rate)[:-1]))
+            stretches.append((BlockKind.PIERCE, number, np.repeat(path.points[:1], self.pierce_ticks, axis=0)))
+            length = curves.length(path) * self.turns
+            points = along(path, smooth(length, self.feed or self.process.feed, 8.0, rate))
+            stretches.append((BlockKind.CUT, number, points[:-1]))
+            here = points[-1]
+        stretches.append((BlockKind.RAPID, None, self._line(here, park, rate)))
+        return self._assemble([stretch for stretch in stretches if len(stretch[2])])
+
+    def _line(self, start: np.ndarray, end: np.ndarray, rate: float) -> np.ndarray:
+        length = float(np.hypot(*(end - start)))
+        if length == 0.0:
+            return np.array([start])
+        distance = smooth(length, self.rapid_speed, self.rapid_acceleration, rate)
+        return start + distance[:, np.newaxis] / length * (end - start)
+
+    def _assemble(self, stretches: list[tuple[BlockKind, int | None, np.ndarray]]) -> Program:
+        blocks, first = [], 0
+        for kind, number, points in stretches:
+            handles = () if number is None else (f"{number}A", f"{number}B")
+            last = first + len(points) - 1
+            blocks.append(Block(kind, first, last, number, "CUT" if number else "", handles))
+            first = last + 1
+        column = np.repeat(np.arange(len(stretches)), [len(points) for _, _, points in stretches])
+        power = np.array([0.0 if kind is BlockKind.RAPID else self.process.power for kind, _, _ in stretches])[column]
+        sheet = np.concatenate([points for _, _, points in stretches])
+        return Program(
+            robot=self.robot,
+            placement=self.placement,
+            process=self.process,
+            drawing=DrawingRef(self.drawing.file, self.drawing.sha256, self.drawing.metres_per_unit),
+            mode=self.mode,
+            blocks=tuple(blocks),
+            q=self.robot.inverse(self._to_base(sheet)),
+            power=power if self.mode is Mode.CUT else np.zeros(len(power)),
+            block=column,
+        )
+
+    def _turn(self) -> np.ndarray:
+        cos, sin = np.cos(self.placement.rotation), np.sin(self.placement.rotation)
+        return np.array([[cos, -sin], [sin, cos]])
+
+    def _to_base(self, sheet: np.ndarray) -> np.ndarray:
+        xy = sheet @ self._turn().T + (self.placement.x, self.placement.y)
+        return np.column_stack([xy, np.full(len(xy), self.placement.z if self.z is None else self.z)])
+
+    def _to_sheet(self, base: np.ndarray) -> np.ndarray:
+        return (base - (self.placement.x, self.placement.y)) @ self._turn()
+
+    def shifted(self, program: Program, row: int, dx: float, dy: float = 0.0) -> Program:
+        """The program with one setpoint moved in the base frame."""
+        q = program.q.copy()
+        q[row] = self.robot.inverse(self.robot.forward(q[[row]]) + np.array([dx, dy, 0.0]))[0]
+        return replace(program, q=q)
+
+
+@pytest.fixture(scope="session")
+def bench() -> Bench:
+    process = Process(
+        name="test steel",
+        source="a test",
+        material="steel",
+        thickness=1e-3,
+        kerf=0.2e-3,
+        feed=0.1,
+        power=0.85,
+        pierce_time=0.05,
+    )
+    return Bench(robot=load_robot("delta-300"), process=process)
+
+
+@pytest.fixture(scope="session")
+def program(bench: Bench) -> Program:
+    """A valid program of the test plate."""
+    return bench.program()

@@ -1,0 +1,93 @@
+"""The report as JSON and as text."""
+
+import json
+from dataclasses import fields, replace
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deltacam.model import Check, Finding, LedgerEntry, Outcome, Report
+from deltacam.program.program import Program
+from deltacam.verification.plain import plain
+from deltacam.verification.report_json import to_json
+from deltacam.verification.report_text import to_text
+from deltacam.verification.verify import verify
+
+Bench = Any  # the class in conftest.py
+
+HOSTILE = 'CUT\x1b[2J\x1b]0;title\x07\r\n\u2028\u202e\u200b\x9b1m<script>"\ud800'
+
+
+@pytest.fixture
+def bad(bench: Bench, program: Program) -> Report:
+    """A report of a program whose names are hostile and whose last contour is not cut."""
+    blocks = tuple(replace(block, layer=HOSTILE, handles=(HOSTILE,)) for block in program.blocks)
+    contours = tuple(replace(c, layer=HOSTILE, handles=(HOSTILE,)) for c in bench.drawing.contours)
+    entry = LedgerEntry("2F", "TEXT", HOSTILE, "", Outcome.IGNORED, HOSTILE)
+    finding = Finding(HOSTILE, where=HOSTILE, hint=HOSTILE)
+    drawing = replace(bench.drawing, file=HOSTILE, contours=contours, ledger=(entry,), findings=(finding,))
+    program = bench.but(order=(4, 3, 1)).program()
+    moved = replace(program, drawing=replace(program.drawing, file=HOSTILE), blocks=blocks[: len(program.blocks)])
+    return verify(bench.shifted(moved, 700, 1e-3), drawing=drawing)
+
+
+def test_the_json_has_the_documented_keys_in_order(bench: Bench, program: Program) -> None:
+    report = verify(program, drawing=bench.drawing)
+    found = json.loads(to_json(report), parse_constant=pytest.fail)
+    assert list(found) == ["passed", "checks", "summary", "ledger", "findings"]
+    assert found["passed"] is True
+    assert list(found["checks"][0]) == ["name", "passed", "worst", "limit", "unit", "tick", "where"]
+    assert list(found["checks"][0]) == [field.name for field in fields(Check)]
+    assert to_json(report) == to_json(verify(program, drawing=bench.drawing))
+
+
+def test_nothing_hostile_reaches_a_terminal(bad: Report) -> None:
+    assert not bad.passed
+    for text in (to_text(bad), to_json(bad)):
+        lines = text.split("\n")
+        assert all(line.isprintable() for line in lines)
+        assert text.encode("utf-8")
+    assert json.loads(to_json(bad))["ledger"][0]["layer"] == HOSTILE
+
+
+def test_the_text_says_the_verdict_first_and_fits_a_screen(bench: Bench, program: Program, bad: Report) -> None:
+    good = to_text(verify(program, drawing=bench.drawing)).splitlines()
+    assert good[0].startswith("PASSED  plate.dxf (cut): all ")
+    assert len(good) <= 24
+    assert max(map(len, good)) <= 120
+    lines = to_text(bad).splitlines()
+    assert lines[0].startswith("FAILED  ")
+    first = next(index for index, line in enumerate(lines) if line.startswith("  ok"))
+    assert all("  FAIL  " in line for line in lines[first - sum(" FAIL " in line for line in lines) : first])
+    assert any("tick 7" in line and "(1.7" in line and "s) x " in line for line in lines)
+
+
+def test_the_text_of_a_program_without_cuts_or_positions_is_whole(bench: Bench, program: Program) -> None:
+    q = program.q.copy()
+    q[700] = -3.0
+    text = to_text(verify(replace(program, q=q), drawing=bench.drawing))
+    assert "FAIL  possible poses" in text
+    assert "tick 700" in text
+    assert "note: the arms cannot close" in text
+
+
+def test_many_findings_do_not_fill_the_screen(program: Program) -> None:
+    report = replace(verify(program, drawing=None), findings=tuple(Finding(f"thing {n}") for n in range(100)))
+    text = to_text(report)
+    assert "note: thing 0\n" in text
+    assert "and 92 more" in text
+
+
+@given(st.text(alphabet=st.characters(codec=None, categories=None)))
+def test_plain_text_is_printable_and_short(text: str) -> None:
+    shown = plain(text)
+    assert shown.isprintable()
+    assert len(shown) <= 60 * len("\\U0010ffff")
+    assert "\x1b" not in shown
+
+
+@pytest.mark.parametrize("text", ["CUT", "Ebene 1 (außen)", "図面", "a<b>&\"c'"])
+def test_plain_text_leaves_ordinary_names_alone(text: str) -> None:
+    assert plain(text) == text
