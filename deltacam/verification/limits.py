@@ -12,9 +12,9 @@ from deltacam.verification.measure import DIFFERENCES, ROUNDING_DEG, at_most, pe
 def joint_range(evidence: Evidence) -> Check:
     """No joint leaves its range; negative is inside."""
     q, joints = evidence.program.q, evidence.robot.joints
-    beyond = np.degrees(np.maximum(joints.min - q, q - joints.max))
+    beyond = np.degrees(np.maximum(joints.min - q, q - joints.max)) - ROUNDING_DEG
     joint = int(np.argmax(beyond.max(axis=0)))
-    return at_most(evidence, "joint range", beyond[:, joint], ROUNDING_DEG, "deg", note=f"joint {joint + 1}")
+    return at_most(evidence, "joint range", beyond[:, joint], 0.0, "deg beyond", note=f"joint {joint + 1}")
 
 
 def joint_speed(evidence: Evidence) -> Check:

@@ -74,11 +74,15 @@ def _failures(checks: list[Check], rate: float) -> list[str]:
 
 def _in_two_columns(checks: list[Check]) -> list[str]:
     """The passed checks with their worst values and limits, two on a line, the first half to the left."""
+    half = (len(checks) + 1) // 2
+    columns = zip_longest(_aligned(checks[:half]), _aligned(checks[half:]), fillvalue="")
+    return ["  ".join(pair).rstrip() for pair in columns]
+
+
+def _aligned(checks: list[Check]) -> list[str]:
     cells = [(check.name, *_values(check)) for check in checks]
     name, worst, limit = (max((len(cell[column]) for cell in cells), default=0) for column in range(3))
-    texts = [f"  ok  {cell[0]:<{name}}  {cell[1]:>{worst}} {cell[2]:<{limit}}" for cell in cells]
-    half = (len(texts) + 1) // 2
-    return [f"{left}  {right}".rstrip() for left, right in zip_longest(texts[:half], texts[half:], fillvalue="")]
+    return [f"  ok  {cell[0]:<{name}}  {cell[1]:>{worst}} {cell[2]:<{limit}}" for cell in cells]
 
 
 def _values(check: Check) -> tuple[str, str]:

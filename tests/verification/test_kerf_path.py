@@ -70,10 +70,8 @@ def test_a_contour_that_crosses_itself_has_no_path_that_could_be_trusted() -> No
 
 
 def test_a_bay_that_the_kerf_closes_leaves_two_rings() -> None:
-    points = np.array(
-        [(0, 0), (10, 0), (10, 10), (5.05, 10), (5.05, 9), (7, 9), (7, 2), (3, 2), (3, 9), (4.95, 9), (4.95, 10)]
-    )
-    points = np.concatenate([points, [(0, 10)]]) * 1e-3
+    chamber = [(5.05, 10), (5.05, 9), (7, 9), (7, 2), (3, 2), (3, 9), (4.95, 9), (4.95, 10)]
+    points = np.array([(0, 0), (10, 0), (10, 10), *chamber, (0, 10)]) * 1e-3
     assert len(rings(contour(curves.polygon(points), 0), 0.2e-3)) == 2
 
 
