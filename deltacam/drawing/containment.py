@@ -1,5 +1,9 @@
 """Which contour lies in which, by even-odd nesting; contours that cross themselves or each other are refused.
 
+An outline that is open but for a small gap, such as a holding tab, counts as closed here, as long as it lies in no
+contour itself: what lies inside it are the holes of a part. What lies inside a tangle of lines is refused, for its side
+is unknown.
+
 Two contours may touch in a point. Where they share a stretch of line, each would be cut half a kerf into the other, so
 that is refused like a crossing.
 """
@@ -16,7 +20,7 @@ import numpy as np
 from deltacam.drawing.join import point_mm
 from deltacam.errors import DrawingError
 from deltacam.geometry import curve as curves
-from deltacam.model import Contour, Finding
+from deltacam.model import Contour, Curve, Finding, IntArray
 from deltacam.units import to_mm
 
 SAGITTA: Final = 1e-6
@@ -31,11 +35,19 @@ SHARED: Final = 1e-3
 _HINT: Final = "separate the outlines in the drawing, or put what is not to be cut on its own layer and leave it out"
 
 
-def nest(contours: Sequence[Contour]) -> tuple[tuple[Contour, ...], list[Finding]]:
-    """The contours with their depth and parent, and findings where two touch.
+def nest(
+    contours: Sequence[Contour], *, outlines: Sequence[Curve] = (), tangles: Sequence[Curve] = ()
+) -> tuple[tuple[Contour, ...], list[Finding]]:
+    """The contours with their depth and parent, and findings where two touch or an outline around them is open.
+
+    Args:
+        contours: closed, in the order of the file.
+        outlines: open curves that are closed but for a gap, m.
+        tangles: open curves between points where more than two lines meet, m.
 
     Raises:
-        DrawingError: a contour that crosses itself, two that cross each other or share a stretch of line.
+        DrawingError: a contour that crosses itself, two that cross each other or share a stretch of line, or one that
+            lies inside a tangle.
     """
     import shapely
 
@@ -46,10 +58,17 @@ def nest(contours: Sequence[Contour]) -> tuple[tuple[Contour, ...], list[Finding
     polygons = shapely.polygons(rings)
     findings = _check_pairs(contours, rings, polygons)
     areas = shapely.area(polygons)
-    inner, outer = shapely.STRtree(polygons).query(shapely.point_on_surface(polygons), predicate="within")
+    tree, inside = shapely.STRtree(polygons), shapely.point_on_surface(polygons)
+    _refuse_tangles(contours, inside, tree, tangles)
+    inner, outer = tree.query(inside, predicate="within")
     around = areas[outer] > areas[inner]
     inner, outer = inner[around], outer[around]
-    depth = np.bincount(inner, minlength=len(contours))
+    opened = _in_outlines(inside, tree, outlines)
+    depth = np.bincount(inner, minlength=len(contours)) + opened
+    if opened.any():
+        many = "1 contour lies" if opened.sum() == 1 else f"{np.count_nonzero(opened)} contours lie"
+        where = contours[int(np.argmax(opened > 0))].where
+        findings.append(Finding(f"{many} in an outline that is open: cut as its holes", where=where))
     parent: dict[int, int] = {}
     for i, j in zip(inner.tolist(), outer.tolist(), strict=True):
         if i not in parent or areas[j] < areas[parent[i]]:
@@ -59,6 +78,37 @@ def nest(contours: Sequence[Contour]) -> tuple[tuple[Contour, ...], list[Finding
         for i, contour in enumerate(contours)
     )
     return nested, findings
+
+
+def _in_outlines(inside: Any, tree: Any, outlines: Sequence[Curve]) -> IntArray:
+    """In how many open outlines, themselves in no contour, each of the points (N,) lies."""
+    import shapely
+
+    places = [curves.flatten(curve, SAGITTA)[0] for curve in _outermost(outlines, tree)]
+    faces = [shapely.make_valid(shapely.Polygon(points)) for points in places]
+    index, _ = shapely.STRtree(faces).query(inside, predicate="within")
+    return np.bincount(index, minlength=len(inside)).astype(np.int64)
+
+
+def _refuse_tangles(contours: Sequence[Contour], inside: Any, tree: Any, tangles: Sequence[Curve]) -> None:
+    """Raises where a contour lies inside a tangle of lines that itself lies in no contour."""
+    import shapely
+
+    lines = [shapely.LineString(curves.flatten(curve, SAGITTA)[0]) for curve in _outermost(tangles, tree)]
+    faces = shapely.get_parts(shapely.polygonize([shapely.unary_union(lines)]))
+    index, _ = shapely.STRtree(faces).query(inside, predicate="within")
+    if len(index):
+        what = "it lies among lines that could be closed in more than one way, so its side is unknown"
+        raise DrawingError(what, where=contours[int(index.min())].where, hint="draw each outline around it for itself")
+
+
+def _outermost(open_curves: Sequence[Curve], tree: Any) -> list[Curve]:
+    """The open curves that start in none of the polygons of the tree."""
+    import shapely
+
+    starts = np.array([curve.points[0] for curve in open_curves]).reshape(-1, 2)
+    within = set(tree.query(shapely.points(starts), predicate="within")[0].tolist())
+    return [curve for i, curve in enumerate(open_curves) if i not in within]
 
 
 def _refuse_self_crossing(contour: Contour, ring: Any) -> None:

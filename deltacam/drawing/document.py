@@ -99,13 +99,13 @@ def load(data: bytes, file: str) -> Document:
 
 
 @contextmanager
-def translated(where: str) -> Iterator[None]:
-    """Turns whatever ezdxf raises on a malformed entity into a DrawingError at ``where``."""
+def translated(where: str, kind: type[Exception] = Exception) -> Iterator[None]:
+    """Turns the exceptions of a kind, by default whatever ezdxf raises, into a DrawingError at ``where``."""
     try:
         yield
     except (DeltacamError, MemoryError):
         raise
-    except Exception as error:
+    except kind as error:
         raise DrawingError(f"the entity is damaged: {_one_line(error)}", where=where, hint=_SAVE_AGAIN) from error
 
 

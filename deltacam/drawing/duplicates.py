@@ -17,27 +17,30 @@ def find(drawn: Sequence[Curve], tolerance: float) -> dict[int, int]:
 
     Args:
         drawn: any curves; an open one never repeats a closed one.
-        tolerance: largest distance between the two, m.
+        tolerance: largest distance between the two, m; a tenth of the length for curves so short that neighbours
+            along a fine polyline would count as the same.
     """
     if len(drawn) < 2:
         return {}
     from scipy.spatial import cKDTree
 
     boxes = np.array([curves.bounds(curve) for curve in drawn])
+    apart = [_allowed(curve, tolerance) for curve in drawn]
     index = cKDTree(boxes)
-    crowded = index.query_ball_point(boxes, tolerance, p=np.inf, return_length=True) > 1
+    crowded = index.query_ball_point(boxes, apart, p=np.inf, return_length=True) > 1
     found: dict[int, int] = {}
     for i in np.flatnonzero(crowded).tolist():
         if i in found:
             continue
-        for j in sorted(index.query_ball_point(boxes[i], tolerance, p=np.inf)):
+        for j in sorted(index.query_ball_point(boxes[i], apart[i], p=np.inf)):
             if j > i and j not in found and same(drawn[i], drawn[j], tolerance):
                 found[j] = i
     return found
 
 
 def same(one: Curve, other: Curve, tolerance: float) -> bool:
-    """Whether two curves draw the same line within the tolerance, m."""
+    """Whether two curves draw the same line within the tolerance, m, and within a tenth of their length."""
+    tolerance = _allowed(one, tolerance)
     if one.closed != other.closed:
         return False
     if not one.closed and len(one.points) == len(other.points) == 2:
@@ -45,6 +48,11 @@ def same(one: Curve, other: Curve, tolerance: float) -> bool:
     if abs(curves.length(one) - curves.length(other)) > 2.0 * tolerance + 1e-6 * curves.length(one):
         return False
     return _follows(one, other, tolerance) and _follows(other, one, tolerance)
+
+
+def _allowed(curve: Curve, tolerance: float) -> float:
+    """How far a duplicate of the curve may be from it, m."""
+    return min(tolerance, 0.1 * curves.length(curve))
 
 
 def _same_segment(one: Curve, other: Curve, tolerance: float) -> bool:

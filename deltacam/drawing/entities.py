@@ -16,6 +16,7 @@ import numpy as np
 from deltacam.drawing import kinds, shapes
 from deltacam.drawing.document import translated
 from deltacam.errors import DrawingError
+from deltacam.geometry import curve as curves
 from deltacam.model import Array, Curve
 from deltacam.units import to_mm
 
@@ -24,6 +25,9 @@ MAX_ENTITIES: Final = 1_000_000
 
 MAX_NESTING: Final = 32
 """Blocks nested deeper are refused; a block that holds itself is found by its name."""
+
+MAX_REACH: Final = 1e6
+"""No part is larger, m; a larger number is damage."""
 
 FLATNESS: Final = 1e-5
 """How far z may differ, m, within a flat drawing."""
@@ -105,11 +109,14 @@ class _Walk:
         """The entity with its curve."""
         with translated(entity.where):
             shape, matrix = kinds.read(raw)
-            if isinstance(shape, str):
-                return replace(entity, reason=shape)
+        if isinstance(shape, str):
+            return replace(entity, reason=shape)
+        # Absurd numbers overflow without a word here; what comes out is checked.
+        with np.errstate(all="ignore"), translated(entity.where, ValueError):
             matrix = matrix @ place.matrix
             _check_numbers(shape, matrix, entity)
             trace = shapes.trace(shape, matrix)
+            _check_curve(trace.curve, entity)
         self._check_height(trace.heights, entity)
         if trace.curve is None:
             return replace(entity, reason=f"a {entity.kind} of length zero")
@@ -131,7 +138,7 @@ class _Walk:
 
     def _insert(self, raw: Any, entity: Entity, place: _Place) -> Iterator[Entity]:
         """An INSERT's own line, its attributes, and the entities of its block, once per place of an array."""
-        name = str(raw.dxf.name)
+        name = _text(raw.dxf.name)
         if name in place.blocks or len(place.blocks) >= MAX_NESTING:
             inside = "/".join((*place.blocks, name))
             raise DrawingError(f"blocks are nested without end: {inside[:200]}", where=entity.where)
@@ -177,9 +184,9 @@ def read(document: Any, metres_per_unit: float) -> list[Entity]:
 
 def _named(raw: Any, place: _Place) -> Entity:
     """An entity with its names only."""
-    layer = str(raw.dxf.get("layer", "0"))
+    layer = _text(raw.dxf.get("layer", "0"))
     return Entity(
-        handle=str(raw.dxf.handle or "?"),
+        handle=_text(raw.dxf.handle or "?"),
         kind=raw.dxftype(),
         layer=place.layer if layer == "0" else layer,
         block="/".join(place.blocks),
@@ -192,7 +199,22 @@ def _check_numbers(shape: shapes.Shape, matrix: Array, entity: Entity) -> None:
         points = shape.frame[:1] + np.array([[0.0], [1.0], [1.0]]) * shape.frame
     else:
         points = shape.points if isinstance(shape, shapes.Lines) else shape.control
-    reach = float(np.abs(points @ matrix[:3, :3] + matrix[3, :3]).max())
-    if not reach <= kinds.MAX_COORDINATE:
-        what = f"a coordinate of {reach:.3g} m is beyond {kinds.MAX_COORDINATE:.0e} m"
+    _check_reach(float(np.abs(points @ matrix[:3, :3] + matrix[3, :3]).max()), entity)
+
+
+def _check_curve(curve: Curve | None, entity: Entity) -> None:
+    """Raises where an arc is absurdly long; its ends alone do not show that."""
+    if curve is not None:
+        _check_reach(float(curves.lengths(curve).max()), entity)
+
+
+def _check_reach(reach: float, entity: Entity) -> None:
+    """Raises where a coordinate or length, m, is not a number or is absurd."""
+    if not reach <= MAX_REACH:
+        what = f"it reaches {reach:.3g} m, beyond the limit of {MAX_REACH:.0f} m"
         raise DrawingError(what, where=entity.where, hint="check the unit (--units) and the entity")
+
+
+def _text(value: object) -> str:
+    """A name from the file as printable text; bytes that no encoding explains become question marks."""
+    return str(value).encode("utf-8", "surrogateescape").decode("utf-8", "replace")

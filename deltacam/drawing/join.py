@@ -18,6 +18,9 @@ from deltacam.units import to_mm
 NEAR: Final = 2e-3
 """The ends of an open chain that are closer than this, m, are named as a gap: a micro-joint, or a mistake."""
 
+NOTHING_INSIDE: Final = "a closed line that encloses nothing"
+"""The reason of a sliver: a line drawn back and forth."""
+
 _LISTED: Final = 8
 
 
@@ -45,6 +48,8 @@ class Joined:
         notes: what became of each entity that is on no loop, by index: outcome and reason.
         copies: entities that repeat an entity of a loop, or one without a loop: index to index.
         open_chains: how many there are.
+        outlines: open chains that are closed but for a small gap, m.
+        tangles: chains between branch points, m; they enclose something, but it is not clear what.
         findings: what a person should know.
     """
 
@@ -52,6 +57,8 @@ class Joined:
     notes: dict[int, tuple[Outcome, str]] = field(default_factory=dict)
     copies: dict[int, int] = field(default_factory=dict)
     open_chains: int = 0
+    outlines: list[Curve] = field(default_factory=list)
+    tangles: list[Curve] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 
 
@@ -59,7 +66,7 @@ def join(entities: Sequence[Entity]) -> Joined:
     """The closed loops that the entities form, joining ends at ``nodes.JOINING``; arcs stay exact.
 
     Raises:
-        DrawingError: hundreds of ends in one place.
+        DrawingError: thousands of ends in one place.
     """
     joined = Joined()
     drawn = _drawn(entities, joined)
@@ -117,8 +124,24 @@ def _loops(strands: list[tuple[int, Curve]], entities: Sequence[Entity], joined:
         for i, _ in chain:
             joined.notes[strands[i][0]] = (Outcome.IGNORED, f"{count}, {reason}")
     joined.open_chains = len(open_chains)
+    joined.tangles = [_open_curve(chain, strands) for chain in traced.ambiguous]
+    opened = [_open_curve(chain, strands) for chain in traced.open]
+    joined.outlines = [curve for curve in opened if _is_nearly_closed(curve)]
     joined.findings += _open_findings([entities[strands[chain[0][0]][0]].layer for chain, _ in open_chains])
     return [_loop(chain, strands, entities) for chain in traced.loops]
+
+
+def _open_curve(chain: list[chains.Step], strands: list[tuple[int, Curve]]) -> Curve:
+    """The curve of an open chain."""
+    return tidy.link([curves.reverse(strands[i][1]) if turned else strands[i][1] for i, turned in chain], closed=False)[
+        0
+    ]
+
+
+def _is_nearly_closed(curve: Curve) -> bool:
+    """Whether an open curve is an outline but for a gap, like the holding tab of a part."""
+    gap, reach = float(np.hypot(*(curve.points[-1] - curve.points[0]))), curves.length(curve)
+    return len(curve.bulges) > 1 and (gap <= 0.05 * reach or gap <= min(NEAR, 0.25 * reach))
 
 
 def _loop(chain: list[chains.Step], strands: list[tuple[int, Curve]], entities: Sequence[Entity]) -> Loop:
@@ -143,7 +166,7 @@ def _keep(loops: list[Loop], entities: Sequence[Entity], joined: Joined) -> None
         curve, moved = (None, 0.0) if _is_sliver(ring) else tidy.cleaned(ring)
         if curve is None:
             for i in loop.members:
-                joined.notes[i] = (Outcome.IGNORED, "a closed line that encloses nothing")
+                joined.notes[i] = (Outcome.IGNORED, NOTHING_INSIDE)
             joined.findings.append(
                 Finding("a closed line encloses nothing and is not cut", where=entities[loop.members[0]].where)
             )

@@ -12,9 +12,6 @@ from ezdxf.math import OCS, Vec3, fit_points_to_cad_cv
 from deltacam.drawing.shapes import Conic, Lines, Shape, Spline
 from deltacam.model import Array
 
-MAX_COORDINATE: Final = 1e6
-"""No part is larger, m; a larger number is damage."""
-
 _IGNORED: Final = {
     **dict.fromkeys(("TEXT", "MTEXT", "ATTRIB", "ATTDEF", "ARCALIGNEDTEXT", "RTEXT"), "text is never cut"),
     **dict.fromkeys(("DIMENSION", "ARC_DIMENSION", "LARGE_RADIAL_DIMENSION", "TOLERANCE"), "a dimension is never cut"),

@@ -22,7 +22,8 @@ JOINING: Final = 1e-5
 COINCIDENT: Final = 1e-7
 """Ends up to 0.1 um apart are the same: the rounding of the numbers in a file."""
 
-_CROWD: Final = 200
+MAX_PAIRS: Final = 5_000_000
+"""More pairs of neighbouring ends than this, and 100 per end, are refused: they would not fit into memory."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +45,7 @@ def find(ends: Array) -> Nodes:
     """The nodes of the ends, (M, 2, 2) m.
 
     Raises:
-        DrawingError: hundreds of ends in one place.
+        DrawingError: thousands of ends in one place.
     """
     flat = ends.reshape(-1, 2)
     labels = _clusters(flat, COINCIDENT)
@@ -81,9 +82,9 @@ def _clusters(points: Array, distance: float) -> IntArray:
 
     unique, inverse = np.unique(points, axis=0, return_inverse=True)
     index = cKDTree(unique)
-    if index.count_neighbors(index, distance) > _CROWD * len(unique):
+    if index.count_neighbors(index, distance) > MAX_PAIRS + 100 * len(unique):
         x, y = to_mm(float(unique[0, 0])), to_mm(float(unique[0, 1]))
-        raise DrawingError(f"hundreds of line ends crowd in one place, near ({x:.3f}, {y:.3f}) mm")
+        raise DrawingError(f"thousands of line ends crowd in one place, near ({x:.3f}, {y:.3f}) mm")
     pairs = index.query_pairs(distance, output_type="ndarray")
     shape = (len(unique), len(unique))
     links = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=shape)

@@ -43,7 +43,8 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
     joined = join.join(drawn)
     if not joined.loops:
         raise _nothing_to_cut(drawn, joined, source, path.name)
-    contours, touching = containment.nest([_contour(i + 1, loop, drawn) for i, loop in enumerate(joined.loops)])
+    flat = [_contour(i + 1, loop, drawn) for i, loop in enumerate(joined.loops)]
+    contours, nesting = containment.nest(flat, outlines=joined.outlines, tangles=joined.tangles)
     return Drawing(
         file=path.name,
         sha256=hashlib.sha256(data).hexdigest(),
@@ -56,7 +57,7 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
             *_layer_findings(drawn, source),
             *_ignored_findings(drawn, source),
             *joined.findings,
-            *touching,
+            *nesting,
         ),
         conversion_error=max(loop.error for loop in joined.loops),
     )
@@ -133,6 +134,9 @@ def _nothing_to_cut(drawn: Sequence[Entity], joined: join.Joined, source: Any, f
     found += [f"{count} {kind}" for kind, count in kinds.items()]
     paper = _in_paper_space(source)
     found += [f"{_counted(paper, 'entity', 'entities', verb=False)} in paper space"] if paper else []
+    slivers = sum(reason == join.NOTHING_INSIDE for _, reason in joined.notes.values())
+    if slivers:
+        found.append(f"{_counted(slivers, 'entity', 'entities', verb=False)} in closed lines that enclose nothing")
     if not found:
         held = "it holds no entities" if not drawn else "it holds only lines of length zero"
         return DrawingError(f"nothing to cut: {held}", where=file, hint="export the drawing again")

@@ -75,8 +75,8 @@ def choose(header: int | None, *, unit: str | None, metres_per_unit: float | Non
 def missing(size: tuple[float, float]) -> DrawingError:
     """The error for a drawing without a unit that is ``size`` units wide and high."""
     width, height = size
-    in_mm = f"{width:.4g} x {height:.4g} mm if its unit is mm"
-    in_inch = f"{25.4 * width:.4g} x {25.4 * height:.4g} mm if it is inch"
+    in_mm = f"{width:.6g} x {height:.6g} mm if its unit is mm"
+    in_inch = f"{25.4 * width:.6g} x {25.4 * height:.6g} mm if it is inch"
     return DrawingError(f"the drawing states no unit: it is {in_mm}, {in_inch}", hint="state the unit: --units mm")
 
 

@@ -52,7 +52,9 @@ def curve(control: Array, weights: Array, knots: Array, degree: int, tolerance: 
         pieces.append(piece)
         worst = max(worst, error)
     points = np.concatenate([pieces[0].points, *(piece.points[1:] for piece in pieces[1:])])
-    return Curve(points=points, bulges=np.concatenate([piece.bulges for piece in pieces]), closed=False), worst
+    whole = Curve(points=points, bulges=np.concatenate([piece.bulges for piece in pieces]), closed=False)
+    whole, moved = biarc.merge(whole)
+    return whole, worst + moved
 
 
 def stretches(control: Array, weights: Array, knots: Array, degree: int) -> list[tuple[biarc.Evaluate, Array]]:

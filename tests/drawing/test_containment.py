@@ -1,0 +1,141 @@
+"""Nesting of contours, against shapely's own predicates and by hand."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deltacam.drawing.containment import nest
+from deltacam.errors import DrawingError
+from deltacam.geometry import curve as curves
+from deltacam.model import Contour, Curve
+
+MM = 1e-3
+
+
+def contours(*shapes: Curve) -> list[Contour]:
+    return [Contour(i, curve, layer="CUT", handles=(f"{i:X}",)) for i, curve in enumerate(shapes, start=1)]
+
+
+def disc(x: float, y: float, radius: float) -> Curve:
+    return curves.circle(MM * np.array([x, y]), MM * radius)
+
+
+def box(x: float, y: float, width: float, height: float) -> Curve:
+    return curves.polygon(MM * np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]]))
+
+
+def nested(*shapes: Curve, **options: Any) -> list[tuple[int, int | None]]:
+    found, _ = nest(contours(*shapes), **options)
+    return [(contour.depth, contour.parent) for contour in found]
+
+
+def test_rings_in_rings_alternate() -> None:
+    order = [3.0, 1.0, 4.0, 2.0]
+    assert nested(*(disc(0, 0, radius) for radius in order)) == [(1, 3), (3, 4), (0, None), (2, 1)]
+
+
+def test_neighbours_are_not_nested() -> None:
+    assert nested(disc(0, 0, 5), disc(20, 0, 5), disc(20, 0, 2)) == [(0, None), (0, None), (1, 2)]
+
+
+@settings(deadline=None, max_examples=30)
+@given(
+    st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5), st.integers(1, 9)), min_size=1, max_size=25, unique=True)
+)
+def test_depth_counts_the_circles_around_each(circles: list[tuple[int, int, int]]) -> None:
+    shapes = [disc(20 * x, 20 * y, radius) for x, y, radius in circles]
+    expected = [sum((x, y) == (u, v) and r < s for u, v, s in circles) for x, y, r in circles]
+    found, findings = nest(contours(*shapes))
+    assert [contour.depth for contour in found] == expected
+    assert findings == []
+    for contour, (x, y, radius) in zip(found, circles, strict=True):
+        larger = [(s, i) for i, (u, v, s) in enumerate(circles, start=1) if (u, v) == (x, y) and s > radius]
+        assert contour.parent == (min(larger)[1] if larger else None)
+
+
+def test_contours_that_cross_are_refused_by_name_and_place() -> None:
+    with pytest.raises(DrawingError, match=r"it crosses contour 2 \(layer CUT, #2\) at \(8\.000, ") as caught:
+        nest(contours(disc(0, 0, 10), disc(16, 0, 10)))
+    assert caught.value.where == "contour 1 (layer CUT, #1)"
+    assert caught.value.hint
+
+
+def test_a_hole_that_breaks_through_the_edge_is_refused() -> None:
+    with pytest.raises(DrawingError, match="crosses"):
+        nest(contours(box(0, 0, 50, 50), disc(50, 25, 5)))
+    with pytest.raises(DrawingError, match="crosses"):
+        nest(contours(box(0, 0, 50, 50), disc(45.05, 25, 5)))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.0])
+def test_contours_that_touch_in_a_point_are_nested_with_a_finding(turn: float) -> None:
+    def turned(shape: Curve) -> Curve:
+        return curves.transform(shape, rotation=turn)
+
+    found, findings = nest(contours(turned(box(0, 0, 10, 10)), turned(box(10, 10, 5, 5)), turned(disc(5, 5, 5))))
+    assert [(contour.depth, contour.parent) for contour in found] == [(0, None), (0, None), (1, 1)]
+    assert {finding.what.split(" (")[0] for finding in findings} <= {"it touches contour 2", "it touches contour 3"}
+
+
+def test_contours_that_share_a_line_are_refused() -> None:
+    with pytest.raises(DrawingError, match="it shares 10 mm of line with contour 2"):
+        nest(contours(box(0, 0, 10, 10), box(10, 0, 10, 10)))
+    with pytest.raises(DrawingError, match="it shares 4 mm of line with contour 2"):
+        nest(contours(box(0, 0, 10, 10), box(0, 3, 4, 4)))
+
+
+@pytest.mark.parametrize(
+    ("corners", "place"),
+    [
+        ([(0, 0), (10, 10), (10, 0), (0, 10)], "(5.000, 5.000)"),  # a figure of eight
+        ([(0, 0), (10, 0), (5, 5), (10, 10), (0, 10), (5, 5)], "(5.000, 5.000)"),  # touches itself
+        ([(0, 0), (10, 0), (10, 10), (10, 20), (10, 10), (0, 10)], ""),  # runs out and back
+    ],
+)
+def test_a_contour_that_meets_itself_is_refused(corners: list[tuple[float, float]], place: str) -> None:
+    with pytest.raises(DrawingError, match="crosses or touches itself") as caught:
+        nest(contours(curves.polygon(MM * np.array(corners, dtype=float))))
+    assert place in caught.value.what
+    assert "contour 1" in caught.value.where
+
+
+def test_a_crescent_with_a_tip_of_tangent_arcs_is_no_crossing() -> None:
+    # Two arcs that leave the tip in nearly the same direction.
+    crescent = Curve(points=MM * np.array([[0.0, 0.0], [20.0, 0.0]]), bulges=np.array([0.5, -0.499]))
+    assert nested(crescent) == [(0, None)]
+
+
+def test_holes_in_an_outline_that_is_open_but_for_a_tab_are_holes() -> None:
+    outline = Curve(MM * np.array([[0, 0], [50, 0], [50, 50], [0, 50], [0, 1]]), np.zeros(4), closed=False)
+    found, findings = nest(contours(disc(20, 20, 5), disc(80, 20, 5)), outlines=[outline])
+    assert [(contour.depth, contour.is_hole) for contour in found] == [(1, True), (0, False)]
+    assert findings[0].what == "1 contour lies in an outline that is open: cut as its holes"
+
+
+def test_an_open_engraving_around_a_hole_does_not_turn_it_inside_out() -> None:
+    ring = Curve(MM * np.array([[10, 10], [30, 10], [30, 30], [10, 30], [10, 11]]), np.zeros(4), closed=False)
+    assert nested(box(0, 0, 50, 50), disc(20, 20, 5), outlines=[ring]) == [(0, None), (1, 1)]
+
+
+def test_a_contour_among_lines_that_could_close_in_several_ways_is_refused() -> None:
+    tangles = [
+        Curve(MM * np.array(points, dtype=float), np.zeros(len(points) - 1), closed=False)
+        for points in (
+            [(25, 0), (0, 0), (0, 50), (25, 50)],
+            [(25, 0), (25, 50)],
+            [(25, 0), (50, 0), (50, 50), (25, 50)],
+        )
+    ]
+    with pytest.raises(DrawingError, match="its side is unknown"):
+        nest(contours(disc(10, 10, 3)), tangles=tangles)
+    assert nested(disc(80, 10, 3), tangles=tangles) == [(0, None)]
+    assert nested(box(-10, -10, 70, 70), disc(10, 10, 3), tangles=tangles) == [(0, None), (1, 1)]
+
+
+def test_a_thousand_holes_are_nested_quickly() -> None:
+    holes = [disc(10 * (i % 32), 10 * (i // 32), 4) for i in range(1000)]
+    depths = nested(box(-10, -10, 400, 400), *holes)
+    assert depths == [(0, None)] + [(1, 1)] * 1000

@@ -1,0 +1,293 @@
+"""Entities of every kind, in any extrusion and nesting, against ezdxf's own transformation and evaluation."""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+from ezdxf.math import OCS, BSpline, ConstructionArc, Vec3
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deltacam.drawing import entities
+from deltacam.errors import DrawingError
+from deltacam.geometry import curve as curves
+from deltacam.model import Curve
+
+SCALES = st.sampled_from([1.0, -1.0, 2.5, -0.4])
+
+
+def read(document: Any) -> list[entities.Entity]:
+    return entities.read(document, 1e-3)
+
+
+def only(document: Any) -> Curve:
+    (drawn,) = [entity.curve for entity in read(document) if entity.curve is not None]
+    return drawn
+
+
+def farthest(curve: Curve, points: Iterable[Any]) -> float:
+    """The largest distance of the points, mm, from the curve, m."""
+    return max(curves.nearest(curve, 1e-3 * np.array(Vec3(point).vec2))[2] for point in points)
+
+
+def samples(entity: Any) -> list[Vec3]:
+    """Places that lie on the entity, mm, by ezdxf."""
+    if entity.dxftype() == "LINE":
+        return [entity.dxf.start.lerp(entity.dxf.end, share) for share in (0.0, 0.3, 1.0)]
+    if entity.dxftype() == "LWPOLYLINE":
+        return [place for part in entity.virtual_entities() for place in samples(part)]
+    if entity.dxftype() in ("ARC", "CIRCLE"):
+        ends = (entity.dxf.start_angle, entity.dxf.end_angle) if entity.dxftype() == "ARC" else (0.0, 360.0)
+        span = (ends[1] - ends[0]) % 360.0 or 360.0
+        return list(entity.vertices([ends[0] + span * share for share in (0.0, 0.21, 0.5, 0.8, 1.0)]))
+    tool = entity.construction_tool()
+    if entity.dxftype() == "ELLIPSE":
+        return list(tool.vertices(tool.params(23)))
+    return list(tool.points(np.linspace(tool.knots()[tool.order - 1], tool.knots()[tool.count], 23)))
+
+
+def everything(block: Any) -> None:
+    """One curve of each kind."""
+    block.add_line((1, 2), (8, -3))
+    block.add_arc((4, 1), 6, 30, 250)
+    block.add_circle((-3, 2), 5)
+    block.add_lwpolyline([(0, 0, 0.5), (10, 0, 0), (10, 8, -1.8), (2, 9, 0)], format="xyb", close=True)
+    block.add_ellipse((2, 3), (6, 2), 0.4, 0.3, 5.0)
+    block.add_spline_control_frame([(0, 0), (4, 9), (9, -3), (14, 4), (15, 5)])
+
+
+@settings(deadline=None, max_examples=12)
+@given(SCALES, SCALES, st.floats(0.0, 360.0), SCALES, SCALES, st.booleans())
+def test_inserts_mirrored_squeezed_and_nested_draw_what_ezdxf_explodes_them_to(
+    xscale: float, yscale: float, rotation: float, inner_x: float, inner_y: float, turned: bool
+) -> None:
+    document = ezdxf.new()
+    inner, outer = document.blocks.new("INNER", base_point=(1, 2)), document.blocks.new("OUTER")
+    everything(inner)
+    outer.add_blockref("INNER", (5, -7), {"xscale": inner_x, "yscale": inner_y, "rotation": 20.0})
+    flip = {"extrusion": (0, 0, -1)} if turned else {}
+    attributes = {"xscale": xscale, "yscale": yscale, "rotation": rotation, **flip}
+    insert = document.modelspace().add_blockref("OUTER", (30, 40), attributes)
+    drawn = [entity for entity in read(document) if entity.curve is not None]
+    assert [entity.block for entity in drawn] == ["OUTER/INNER"] * 6
+    for entity, raw in zip(drawn, inner, strict=True):
+        places = insert.matrix44().transform_vertices(outer[0].matrix44().transform_vertices(samples(raw)))
+        assert farthest(entity.curve, places) < (1e-6 if entity.error else 1e-9)
+    if abs(xscale) == abs(yscale) and abs(inner_x) == abs(inner_y):
+        (nested,) = insert.virtual_entities()
+        for entity, exact in zip(drawn, nested.virtual_entities(), strict=True):
+            assert farthest(entity.curve, samples(exact)) < 1e-6
+
+
+def test_an_array_of_inserts_draws_every_copy() -> None:
+    document = ezdxf.new()
+    document.blocks.new("HOLE").add_circle((0, 0), 1)
+    grid = {"row_count": 3, "column_count": 2, "row_spacing": 10, "column_spacing": 20, "rotation": 90}
+    document.modelspace().add_blockref("HOLE", (100, 0), grid)
+    boxes = [curves.bounds(entity.curve) for entity in read(document) if entity.curve is not None]
+    centres = {(round(500 * (b[0] + b[2]), 6), round(500 * (b[1] + b[3]), 6)) for b in boxes}
+    assert centres == {(100.0 - y, x) for x in (0.0, 20.0) for y in (0.0, 10.0, 20.0)}
+
+
+def test_layer_0_in_a_block_is_the_layer_of_the_insert() -> None:
+    document = ezdxf.new()
+    block = document.blocks.new("B")
+    block.add_circle((0, 0), 1)
+    block.add_circle((5, 0), 1, dxfattribs={"layer": "OWN"})
+    document.modelspace().add_blockref("B", (0, 0), {"layer": "CUT"})
+    assert [entity.layer for entity in read(document)] == ["CUT", "CUT", "OWN"]
+
+
+@pytest.mark.parametrize("extrusion", [(0, 0, 1), (0, 0, -1), (0, 0, -5)])
+def test_entities_in_object_coordinates_lie_where_the_extrusion_puts_them(extrusion: Any) -> None:
+    document = ezdxf.new()
+    msp = document.modelspace()
+    attributes = {"extrusion": extrusion}
+    msp.add_arc((4, 1), 6, 30, 100, dxfattribs=attributes)
+    msp.add_lwpolyline([(0, 0, 0.5), (10, 0, -2), (10, 8, 0)], format="xyb", close=True, dxfattribs=attributes)
+    msp.add_polyline2d([(0, 0, 0.5), (10, 0, 0), (10, 8, 0)], format="xyb", dxfattribs=attributes)
+    ocs = OCS(Vec3(extrusion))
+    arc, light, heavy = (entity.curve for entity in read(document))
+    exact = ConstructionArc((4, 1), 6, 30, 100)
+    assert farthest(arc, [ocs.to_wcs(Vec3(place)) for place in exact.vertices(exact.angles(9))]) < 1e-9
+    assert curves.length(arc) == pytest.approx(6e-3 * math.radians(70), rel=1e-12)
+    for curve, entity in ((light, msp[1]), (heavy, msp[2])):
+        for part in entity.virtual_entities():
+            assert farthest(curve, samples(part)) < 1e-9
+    assert np.abs(light.bulges).max() <= 1.0
+
+
+def test_an_extrusion_of_zero_means_upright() -> None:
+    document = ezdxf.new()
+    circle = document.modelspace().add_circle((3, 4), 1)
+    circle.dxf.set("extrusion", (0, 0, 1))
+    circle.dxf.__dict__["extrusion"] = Vec3(0, 0, 0)
+    assert curves.bounds(only(document)) == pytest.approx((0.002, 0.003, 0.004, 0.005))
+
+
+@settings(deadline=None, max_examples=30)
+@given(
+    st.integers(2, 5),
+    st.lists(st.tuples(st.floats(-50, 50), st.floats(-50, 50)), min_size=6, max_size=9, unique=True),
+    st.lists(st.floats(0.2, 5.0), min_size=9, max_size=9),
+    st.sampled_from(["clamped", "unclamped", "corner", "rational"]),
+)
+def test_a_spline_is_followed_within_a_micrometre(degree: int, points: list[Any], weights: Any, kind: str) -> None:
+    count = len(points)
+    inner = np.arange(1.0, count - degree)
+    knots = np.concatenate([np.zeros(degree + 1), inner, np.full(degree + 1, count - degree)])
+    if kind == "unclamped":
+        knots = np.arange(count + degree + 1.0)
+    if kind == "corner" and len(inner) >= degree:
+        knots[degree + 1 : degree + 1 + degree] = knots[degree + 1]
+        knots = np.maximum.accumulate(knots)
+    tool = BSpline(points, degree + 1, knots, weights[:count] if kind == "rational" else None)
+    document = ezdxf.new()
+    document.modelspace().add_spline().apply_construction_tool(tool)
+    t = np.linspace(knots[degree], knots[count], 211)
+    (entity,) = read(document)
+    assert entity.curve is not None
+    assert farthest(entity.curve, tool.points(t)) < 1e-6
+    assert entity.error < 1e-6
+
+
+def test_a_spline_of_straight_edges_keeps_its_corners_exactly() -> None:
+    document = ezdxf.new()
+    corners = [(0, 0), (10, 0), (10, 7), (3, 9)]
+    tool = BSpline(corners, 2, [0, 0, 1, 2, 3, 3])
+    document.modelspace().add_spline().apply_construction_tool(tool)
+    assert only(document).points == pytest.approx(1e-3 * np.array(corners), abs=1e-15)
+    cubic = [(0, 0), (3, 0), (7, 0), (10, 0), (10, 2), (10, 5), (10, 7)]
+    tool = BSpline(cubic, 4, [0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2])
+    document = ezdxf.new()
+    document.modelspace().add_spline().apply_construction_tool(tool)
+    assert only(document).points == pytest.approx(1e-3 * np.array([(0, 0), (10, 0), (10, 7)]), abs=1e-12)
+
+
+def test_a_rational_spline_that_is_a_circle_becomes_arcs_of_its_radius() -> None:
+    from ezdxf.math import rational_bspline_from_arc
+
+    document = ezdxf.new()
+    tool = rational_bspline_from_arc((3, 4), 20, 10, 300)
+    document.modelspace().add_spline().apply_construction_tool(tool)
+    curve = only(document)
+    assert len(curve.bulges) == 2
+    assert curves.curvatures(curve) == pytest.approx(50.0, rel=1e-6)
+
+
+def test_a_spline_of_fit_points_runs_through_them() -> None:
+    document = ezdxf.new()
+    places = [(0, 0, 0), (10, 5, 0), (20, -5, 0), (30, 0, 0)]
+    document.modelspace().add_spline(places)
+    assert farthest(only(document), places) < 1e-6
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.5, 1.0])
+def test_an_ellipse_is_followed_within_a_micrometre(ratio: float) -> None:
+    document = ezdxf.new()
+    whole = document.modelspace().add_ellipse((1, 2), (30, 10), ratio)
+    part = document.modelspace().add_ellipse((1, 2), (30, 10), ratio, 1.0, 6.0, dxfattribs={"extrusion": (0, 0, -1)})
+    first, second = read(document)
+    assert first.curve is not None
+    assert second.curve is not None
+    assert farthest(first.curve, whole.vertices(np.linspace(0, 2 * math.pi, 300))) < 1e-6
+    assert farthest(second.curve, part.vertices(np.linspace(1.0, 6.0, 300))) < 1e-6
+    assert len(first.curve.bulges) == 2 or ratio != 1.0
+
+
+def test_a_fitted_polyline_is_its_fitted_vertices_without_the_frame() -> None:
+    document = ezdxf.new()
+    line = document.modelspace().add_polyline2d([(0, 0), (1, 5), (2, 0), (3, 1)])
+    line.dxf.flags = 4
+    for vertex, flag in zip(line.vertices, (16, 8, 8, 16), strict=True):
+        vertex.dxf.flags = flag
+    assert only(document).points == pytest.approx(1e-3 * np.array([(1, 5), (2, 0)]))
+
+
+def test_a_flat_polyline_in_space_is_read_as_lines() -> None:
+    document = ezdxf.new()
+    document.modelspace().add_polyline3d([(0, 0, 4), (1, 5, 4), (2, 0, 4)])
+    assert only(document).points == pytest.approx(1e-3 * np.array([(0, 0), (1, 5), (2, 0)]))
+
+
+def test_a_constant_height_is_flat() -> None:
+    document = ezdxf.new()
+    document.modelspace().add_circle((0, 0, 12), 3)
+    document.modelspace().add_lwpolyline([(0, 0), (1, 1)], dxfattribs={"elevation": 12})
+    assert len(read(document)) == 2
+
+
+REFUSED = {
+    "two heights": (lambda msp: (msp.add_circle((0, 0, 0), 3), msp.add_circle((0, 0, 1), 3)), "not flat: this lies at"),
+    "slope": (lambda msp: msp.add_line((0, 0, 0), (1, 1, 1)), "not flat: z runs from 0 to 1 mm"),
+    "tilt": (lambda msp: msp.add_circle((0, 0), 3, dxfattribs={"extrusion": (0, 1, 1)}), "not flat"),
+    "tilted bulge": (
+        lambda msp: msp.add_lwpolyline([(0, 0, 1), (5, 0, 1)], format="xyb", dxfattribs={"extrusion": (0, 1, 1)}),
+        "not flat",
+    ),
+    "nan": (lambda msp: msp.add_line((0, 0), (math.nan, 1)), "damaged|not a number"),
+    "far": (lambda msp: msp.add_line((0, 0), (1e10, 1)), "beyond the limit"),
+    "endless arc": (lambda msp: msp.add_lwpolyline([(0, 0, 1e9), (5, 0, 0)], format="xyb"), "beyond the limit"),
+    "radius": (lambda msp: msp.add_circle((0, 0), -3), "negative"),
+    "same angles": (lambda msp: msp.add_arc((0, 0), 3, 90, 90), "same angle"),
+    "missing block": (lambda msp: msp.add_blockref("NONE", (0, 0)), "NONE that is inserted here is not in the file"),
+    "knots": (
+        lambda msp: setattr(msp.add_spline_control_frame([(0, 0), (1, 2), (3, 0), (4, 4)]), "knots", [0, 0, 1, 1]),
+        "knots do not go with",
+    ),
+    "falling knots": (
+        lambda msp: setattr(
+            msp.add_spline_control_frame([(0, 0), (1, 2), (3, 0), (4, 4)]), "knots", [1, 1, 1, 1, 0, 0, 0, 0]
+        ),
+        "do not increase",
+    ),
+    "weights": (
+        lambda msp: setattr(msp.add_spline_control_frame([(0, 0), (1, 2), (3, 0), (4, 4)]), "weights", [1, 0, 1, 1]),
+        "positive weight",
+    ),
+}
+
+
+@pytest.mark.parametrize(("draw", "what"), REFUSED.values(), ids=REFUSED)
+def test_what_cannot_be_right_is_refused_and_names_the_entity(draw: Any, what: str) -> None:
+    document = ezdxf.new()
+    draw(document.modelspace())
+    with pytest.raises(DrawingError, match=what) as caught:
+        read(document)
+    assert "#" in caught.value.where
+    assert "layer 0" in caught.value.where
+
+
+def test_a_block_that_holds_itself_is_refused() -> None:
+    document = ezdxf.new()
+    document.blocks.new("A").add_blockref("B", (0, 0))
+    document.blocks.new("B").add_blockref("A", (0, 0))
+    document.modelspace().add_blockref("A", (0, 0))
+    with pytest.raises(DrawingError, match="nested without end: A/B/A"):
+        read(document)
+
+
+def test_arrays_that_multiply_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(entities, "MAX_ENTITIES", 1000)
+    document = ezdxf.new()
+    document.blocks.new("A").add_circle((0, 0), 1)
+    grid = {"row_count": 20, "column_count": 20, "row_spacing": 10, "column_spacing": 10}
+    document.blocks.new("B").add_blockref("A", (0, 0), grid)
+    document.modelspace().add_blockref("B", (0, 0), grid)
+    with pytest.raises(DrawingError, match="more than 1000 entities"):
+        read(document)
+    document.modelspace().delete_all_entities()
+    document.modelspace().add_blockref("A", (0, 0), {**grid, "row_count": 30000, "column_count": 30000})
+    with pytest.raises(DrawingError, match="an array of 900000000 copies"):
+        read(document)
+
+
+def test_a_name_with_bytes_of_no_encoding_is_printable() -> None:
+    document = ezdxf.new()
+    document.modelspace().add_circle((0, 0), 1, dxfattribs={"layer": "M\udcfcll"})
+    (entity,) = read(document)
+    entity.where.encode("utf-8")
+    assert entity.layer == "M�ll"
