@@ -14,6 +14,7 @@ from deltacam.model import Array
 SPACING: Final = 0.1e-3
 """Largest distance between neighbouring samples of a line, m."""
 
+_SHORTEST: Final = 1e-12  # m; shorter steps are rounding
 _MOST_SAMPLES: Final = 2_000_000  # of one set of lines; a longer one is sampled more coarsely and rechecked more often
 
 
@@ -89,7 +90,7 @@ def _subdivide(line: Array, spacing: float) -> Array:
     """A line with further points on it, at most ``spacing`` apart, without repeated ones: (M, 2) m, M >= 2."""
     step = np.diff(line, axis=0)
     length = np.hypot(*step.T)
-    moving = length > 0.0
+    moving = length > _SHORTEST
     if not moving.any():
         return np.repeat(line[:1], 2, axis=0)
     start, step, length = line[:-1][moving], step[moving], length[moving]

@@ -3,6 +3,7 @@
 It shares nothing with deltacam's planner, so that what it makes is an independent example of a valid program.
 """
 
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -10,10 +11,12 @@ import numpy as np
 import pytest
 
 from deltacam.geometry import curve as curves
-from deltacam.model import Block, BlockKind, Contour, Curve, Drawing, Mode, Placement, Process
+from deltacam.model import Block, BlockKind, Check, Contour, Curve, Drawing, Mode, Placement, Process, Report
 from deltacam.program.program import DrawingRef, Program
 from deltacam.robot.reader import load_robot
 from deltacam.robot.robot import Robot
+from deltacam.verification.report_json import to_json
+from deltacam.verification.report_text import to_text
 
 QUARTER = np.tan(np.pi / 8)
 
@@ -142,6 +145,26 @@ class Bench:
 
     def _to_sheet(self, base: np.ndarray) -> np.ndarray:
         return (base - (self.placement.x, self.placement.y)) @ self._turn()
+
+    @staticmethod
+    def failed(report: Report) -> set[str]:
+        """The names of the failed checks; the reports must be writable whatever was found."""
+        assert report.passed == all(check.passed for check in report.checks)
+        json.loads(to_json(report))
+        assert to_text(report).isascii()
+        return {check.name for check in report.checks if not check.passed}
+
+    @staticmethod
+    def check(report: Report, name: str) -> Check:
+        return next(check for check in report.checks if check.name == name)
+
+    def shifted_outwards(self, program: Program, distance: float) -> Program:
+        """The program with the middle setpoint of the cut of contour 2, a circle, moved along its radius."""
+        block = next(b for b in program.blocks if b.kind is BlockKind.CUT and b.contour == 2)
+        row = (block.first + block.last) // 2
+        arm = self._to_sheet(self.robot.forward(program.q[[row]])[:, :2])[0] + np.array([0.015, 0.0])
+        dx, dy = self._turn() @ arm * distance / np.hypot(*arm)
+        return self.shifted(program, row, dx, dy)
 
     def shifted(self, program: Program, row: int, dx: float, dy: float = 0.0) -> Program:
         """The program with one setpoint moved in the base frame."""

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from deltacam.verification import near
 from deltacam.verification.near import Lines
 
-PLACES = st.tuples(st.floats(-5e-3, 5e-3), st.floats(-5e-3, 5e-3))
+NANOMETRES = st.integers(-5_000_000, 5_000_000)
+PLACES = st.tuples(NANOMETRES, NANOMETRES).map(lambda place: (1e-9 * place[0], 1e-9 * place[1]))
 POLYLINES = st.lists(st.lists(PLACES, min_size=1, max_size=6), min_size=1, max_size=3)
 
 
