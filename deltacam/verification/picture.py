@@ -1,0 +1,295 @@
+"""A picture of what a program does to the sheet: one SVG without scripts, the tool's path coloured by its speed.
+
+What is drawn to scale is in whole micrometres of the sheet frame, y up; everything else is in the picture's pixels.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Final
+
+import numpy as np
+
+from deltacam.geometry import curve as curves
+from deltacam.model import Array, BoolArray, Drawing, IntArray
+from deltacam.program.program import Program
+from deltacam.robot.workspace import Workspace
+from deltacam.units import to_mm, to_um
+from deltacam.verification.evidence import LASER_KINDS, Evidence, gather, to_sheet
+from deltacam.verification.plain import plain
+
+_WIDTH: Final = 900.0
+_MARGIN: Final = 36.0
+_TALLEST: Final = 620.0  # of the part
+_FOOTER: Final = 92.0
+_ERROR: Final = 1 / 6000  # of the part: how far a drawn path may leave the setpoints
+_MAX_RUNS: Final = 12_000  # stretches of one colour
+_MAX_NUMBERS: Final = 60  # cuts that are numbered
+_SHEET_SHOWN: Final = 1.4  # times the part: a larger sheet is not shown
+_VIRIDIS: Final = ("440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725")
+_STYLE: Final = """
+.dc{--paper:#fff;--ink:#1f2328;--soft:#59636e;--line:#818b98;--part:#eaeef2;--edge:#d1d9e0;LIGHT}
+@media screen and (prefers-color-scheme:dark){
+.dc{--paper:#151b23;--ink:#f0f6fc;--soft:#9198a1;--line:#767f89;--part:#242d38;--edge:#3d444d;DARK}}
+.dc text{font:13px system-ui,"Segoe UI",Roboto,"Liberation Sans",sans-serif;fill:var(--soft)}
+.dc .number{font-size:12px;font-weight:600;fill:var(--ink);stroke:var(--paper);stroke-width:3px;paint-order:stroke}
+@media (max-width:640px){.dc text{font-size:21px}.dc .number{font-size:18px}}
+"""
+
+
+def to_svg(program: Program, *, drawing: Drawing | None) -> str:
+    """One picture of the part, the cuts coloured by tool speed, the rapids and the places where cuts begin.
+
+    Args:
+        program: any; where its setpoints are out of the robot's reach, only the drawing is shown.
+        drawing: its contours are drawn where it is given.
+
+    Returns:
+        an SVG document for a file of its own or inside a page; the same program gives the same text. ``desc`` says
+        within how much the path is drawn.
+    """
+    return draw(gather(program, program.robot), drawing)
+
+
+def draw(evidence: Evidence, drawing: Drawing | None) -> str:
+    """As `to_svg`, of evidence that was gathered already."""
+    view = _View.around(evidence, drawing)
+    step, colours, parts = 1.0, 1, [_drawn(drawing, view)]
+    if len(evidence.sheet) > 1:
+        subject = _subject(evidence)
+        speed = tool_speeds(evidence)
+        step, colours = speed_colours(speed[subject])
+        parts += [_paths(evidence.sheet, subject, _colour(speed, step, colours), view), _starts(evidence, view)]
+    about = evidence.impossible[1] or f"path within {to_um(view.error) + 1.0:.0f} µm of the setpoints"
+    height = view.height + _FOOTER
+    box = f'width="{_WIDTH:.0f}" height="{height:.0f}"'
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="dc" viewBox="0 0 {_WIDTH:.0f} {height:.0f}" role="img">'
+        f"<title>{shown(evidence.program.drawing.file)}</title>"
+        f"<desc>{view.caption}; tool path coloured by speed; {shown(about)}</desc>"
+        f'<style>{_style(colours)}</style><rect {box} rx="10" fill="var(--paper)"/>'
+        f"{''.join(parts)}{_footer(view, step, colours)}</svg>\n"
+    )
+
+
+def shown(text: str, *, longest: int = 200) -> str:
+    """Text from a file for HTML and XML: on one line, invisible characters spelled out, quotes and all escaped."""
+    return escape(plain(text, longest=longest), quote=True)
+
+
+def tool_speeds(evidence: Evidence) -> Array:
+    """The tool's speed from every setpoint to the next, (N - 1,) mm/s."""
+    return np.asarray(to_mm(evidence.rate) * np.linalg.norm(np.diff(evidence.tool, axis=0), axis=1))
+
+
+def _subject(evidence: Evidence) -> BoolArray:
+    """Which steps the picture is about, (N - 1,): the cuts, or the whole way where there are none, as in a frame."""
+    cutting = (evidence.is_kind(LASER_KINDS) | (evidence.program.power > 0.0))[: max(len(evidence.tool) - 1, 0)]
+    return cutting if cutting.any() else np.ones_like(cutting)
+
+
+def speed_colours(speed: Array) -> tuple[float, int]:
+    """The speed, mm/s, from one colour to the next, a round number, and the number of colours, at most 15."""
+    top = max(float(speed.max(initial=0.0)), 1.0)
+    power = 10.0 ** math.floor(math.log10(top / 14.0))
+    step = next(power * factor for factor in (1.0, 2.0, 2.5, 5.0, 10.0) if power * factor * 14.0 >= top * (1.0 - 1e-9))
+    return step, int(_colour(np.array([top]), step, 15)[0]) + 1
+
+
+def _colour(speed: Array, step: float, count: int) -> IntArray:
+    """The colour of each speed: a round speed, and also one that is half a step off, is well inside a colour."""
+    return np.minimum(np.floor(speed / step + 0.53).astype(np.int64), count - 1)
+
+
+def _style(colours: int) -> str:
+    """The style sheet: the part of the ramp that is dark enough on light paper, light enough on dark."""
+    anchors = np.array([[int(colour[i : i + 2], 16) for i in (0, 2, 4)] for colour in _VIRIDIS])
+
+    def ramp(first: float, last: float) -> str:
+        at = np.linspace(first, last, colours) * (len(anchors) - 1)
+        rgb = np.column_stack([np.interp(at, np.arange(len(anchors)), anchors[:, i]) for i in range(3)])
+        return "".join("--c{}:#{:02x}{:02x}{:02x};".format(i, *row) for i, row in enumerate(rgb.round().astype(int)))
+
+    return _STYLE.replace("LIGHT", ramp(0.0, 0.8)).replace("DARK", ramp(0.28, 1.0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _View:
+    """What is shown of the sheet frame, and where.
+
+    Attributes:
+        caption: the size of the part in words.
+        error: how far drawn paths may be off, m.
+        per_metre: pixels.
+        height: pixels.
+        origin: where x = y = 0 lies, pixels.
+        sheet: the sheet's edge, (K, 2) m; empty where it is not shown.
+    """
+
+    caption: str
+    error: float
+    per_metre: float
+    height: float
+    origin: tuple[float, float]
+    sheet: Array
+
+    @classmethod
+    def around(cls, evidence: Evidence, drawing: Drawing | None) -> _View:
+        boxes = [curves.bounds(contour.curve) for contour in drawing.contours] if drawing else []
+        subject = _subject(evidence)
+        places = (
+            evidence.sheet[np.append(subject, False) | np.append(False, subject)] if len(subject) else evidence.sheet
+        )
+        part = np.array(boxes).reshape(-1, 2) if boxes else places if len(places) else np.zeros((1, 2))
+        width, depth = np.ptp(part, axis=0)
+        sheet = to_sheet(evidence.program, _sheet_edge(evidence.robot.workspace))
+        if np.ptp(sheet, axis=0).max() > _SHEET_SHOWN * max(width, depth):
+            sheet = np.zeros((0, 2))
+        seen = np.vstack([part, places, sheet])
+        low, extent = seen.min(axis=0), np.maximum(np.ptp(seen, axis=0), 1e-3)
+        scale = float(min((_WIDTH - 2 * _MARGIN) / extent[0], _TALLEST / extent[1]))
+        height = max(float(extent[1]) * scale, 120.0) + 2 * _MARGIN
+        x, y = ((_WIDTH, height) + np.array((-1.0, 1.0)) * (2.0 * low + extent) * scale) / 2.0
+        caption = f"{'part' if boxes else 'path'} {to_mm(width):.2f} \u00d7 {to_mm(depth):.2f} mm"
+        return cls(caption, _ERROR * max(width, depth, 1e-3), scale, height, (float(x), float(y)), sheet)
+
+    def path(self, lines: Sequence[Array], *, width: float, style: str) -> str:
+        """A path of polylines (K, 2) m as relative moves, without the points that it can spare."""
+        if not lines:
+            return ""
+        points, last = np.vstack(lines), np.cumsum([len(line) for line in lines]) - 1
+        fixed = np.zeros(len(points), dtype=bool)
+        fixed[0] = fixed[last] = fixed[last[:-1] + 1] = True
+        kept = np.flatnonzero(thin(points, fixed, self.error))
+        grains = np.rint(to_um(1.0) * points[kept]).astype(np.int64)
+        way = np.diff(grains, axis=0, prepend=[[0, 0]])
+        moves = "".join(
+            "m" + " ".join(map(str, line.ravel())) for line in np.split(way, np.searchsorted(kept, last[:-1] + 1))
+        )
+        (x, y), k = self.origin, self.per_metre * 1e-6
+        place = f'transform="translate({x:.3f} {y:.3f}) scale({k:.9g} {-k:.9g})"'
+        return f'<path {place} {style} stroke-width="{width / k:.4g}" d="{moves.replace(" -", "-")}"/>'
+
+
+def _sheet_edge(sheet: Workspace) -> Array:
+    """The edge of the sheet in the base frame, (K, 2) m."""
+    if sheet.radius is not None:
+        turn = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+        return sheet.radius * np.column_stack((np.cos(turn), np.sin(turn)))
+    return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * (sheet.width or 0.0, sheet.depth or 0.0) / 2.0
+
+
+def _drawn(drawing: Drawing | None, view: _View) -> str:
+    """The sheet's edge and the contours, the material between them filled."""
+    sheet = [np.vstack([view.sheet, view.sheet[:1]])] if len(view.sheet) else []
+    loops = [curves.flatten(contour.curve, view.error / 4.0)[0] for contour in (drawing.contours if drawing else ())]
+    style = 'fill="var(--part)" fill-rule="evenodd" stroke="var(--line)" stroke-linejoin="round"'
+    return view.path(sheet, width=1.0, style='class="sheet" fill="none" stroke="var(--edge)"') + view.path(
+        [np.vstack([loop, loop[:1]]) for loop in loops], width=0.7, style=f'class="contours" {style}'
+    )
+
+
+def _paths(xy: Array, subject: BoolArray, colour: IntArray, view: _View) -> str:
+    """The rapids as one dashed path, then a path per colour, the slow ones on top because they are short."""
+    first, kind = _stretches(xy, subject, colour, view.error * 3.0)
+    lines = [xy[start : end + 1] for start, end in zip(first, np.append(first[1:], len(subject)), strict=True)]
+    dash = f'class="rapid" fill="none" stroke="var(--line)" stroke-dasharray="{5e6 / view.per_metre:.4g}"'
+    parts = [view.path([line for line, of in zip(lines, kind, strict=True) if of < 0], width=0.8, style=dash)]
+    for value in range(int(kind.max(initial=-1)), -1, -1):
+        style = f'class="speed" fill="none" stroke="var(--c{value})" stroke-linecap="round"'
+        parts.append(
+            view.path([line for line, of in zip(lines, kind, strict=True) if of == value], width=2.0, style=style)
+        )
+    return "".join(parts)
+
+
+def _stretches(xy: Array, subject: BoolArray, colour: IntArray, reach: float) -> tuple[IntArray, IntArray]:
+    """Where the way changes colour: the first step of every stretch, and its colour, -1 for what is not the subject.
+
+    Steps within ``reach`` m of the way share a colour, that of the most unusual speed among them, so that no short stop
+    or burst is lost; where there are very many stretches it grows until they are fewer.
+    """
+    usual = np.median(colour[subject])
+    length = np.hypot(*np.diff(xy, axis=0).T)
+    first, kind = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    for doubling in range(12):
+        cell = np.floor((np.cumsum(length) - length) / (reach * 2.0**doubling))
+        first = np.flatnonzero((np.diff(cell, prepend=-1.0) != 0.0) | np.diff(subject, prepend=not subject[0]))
+        slow, fast = np.minimum.reduceat(colour, first), np.maximum.reduceat(colour, first)
+        kind = np.where(subject[first], np.where(fast - usual > usual - slow, fast, slow), -1)
+        change = np.diff(kind, prepend=-2) != 0
+        first, kind = first[change], kind[change]
+        if len(first) <= _MAX_RUNS:
+            break
+    return first, kind
+
+
+def _starts(evidence: Evidence, view: _View) -> str:
+    """A dot where each cut begins, with its place in the order while there is room for numbers."""
+    parts = []
+    for number, run in enumerate(evidence.runs, start=1):
+        x, y = (evidence.sheet[run.first] * (1.0, -1.0) * view.per_metre + view.origin).tolist()
+        name = f"<title>cut {number}: {shown(evidence.place(run.first))}</title>"
+        parts.append(f'<circle class="start" cx="{x:.2f}" cy="{y:.2f}" r="3" fill="var(--ink)">{name}</circle>')
+        if len(evidence.runs) < _MAX_NUMBERS:
+            parts.append(f'<text class="number" x="{x + 5:.2f}" y="{y - 5:.2f}">{number}</text>')
+    return "".join(parts)
+
+
+def _footer(view: _View, step: float, colours: int) -> str:
+    """The size, a scale bar, and what the colours and lines stand for."""
+    power = 10.0 ** math.floor(math.log10(150.0 / view.per_metre))
+    bar = max(power * factor for factor in (1.0, 2.0, 5.0) if power * factor * view.per_metre <= 150.0)
+    top, left, right = view.height + 14.0, _MARGIN, _WIDTH - _MARGIN - 30.0 * colours
+    parts = [
+        f'<text x="{left}" y="{top + 16}">{view.caption}</text>',
+        f'<path d="M{left} {top + 32}v8h{bar * view.per_metre:.2f}v-8" fill="none" stroke="var(--soft)"/>',
+        f'<text x="{left}" y="{top + 61}">{to_mm(bar):g} mm</text>',
+        f'<path d="M{left + 200} {top + 40}h60" stroke="var(--line)" stroke-dasharray="5"/>',
+        f'<text x="{left + 200}" y="{top + 61}">rapid</text>',
+        f'<text x="{right}" y="{top + 16}">tool speed, mm/s</text>',
+    ]
+    every = 1 if colours < 8 else 2
+    for i in range(colours):
+        x = right + 30.0 * i
+        parts.append(f'<rect class="key" x="{x}" y="{top + 28}" width="30" height="12" fill="var(--c{i})"/>')
+        if i % every == 0:
+            parts.append(f'<text x="{x + 15}" y="{top + 61}" text-anchor="middle">{i * step:g}</text>')
+    return "".join(parts)
+
+
+def thin(points: Array, fixed: BoolArray, tolerance: float) -> BoolArray:
+    """Which points are enough to draw a polyline within ``tolerance`` m (Ramer 1972; Douglas and Peucker 1973).
+
+    All stretches between the ``fixed`` points (N,), which stay, are split at once where they are farthest from their
+    chord. The first and the last of the points (N, 2) m are fixed.
+    """
+    kept, place = fixed.copy(), np.arange(len(points))
+    rest = np.flatnonzero(~kept)
+    left = np.maximum.accumulate(np.where(kept, place, 0))[rest]
+    right = np.minimum.accumulate(np.where(kept, place, len(points) - 1)[::-1])[::-1][rest]
+    while len(rest):
+        gap = _gap(points[rest], points[left], points[right])
+        first = np.flatnonzero(np.diff(left, prepend=-1))
+        worst = np.maximum.reduceat(gap, first)
+        count = np.diff(first, append=len(rest))
+        far = np.repeat(worst > tolerance, count)
+        farthest = np.flatnonzero(far & (gap == np.repeat(worst, count)))
+        split = rest[farthest[np.unique(left[farthest], return_index=True)[1]]]
+        kept[split] = True
+        middle = np.repeat(split, count[worst > tolerance])
+        rest, left, right = rest[far], left[far], right[far]
+        left, right = np.where(rest > middle, middle, left), np.where(rest < middle, middle, right)
+        rest, left, right = (values[rest != middle] for values in (rest, left, right))
+    return kept
+
+
+def _gap(point: Array, start: Array, end: Array) -> Array:
+    """The distance of each point from the straight stretch between its start and end, (K,) m."""
+    along, arm = end - start, point - start
+    square = np.sum(along**2, axis=1)
+    share = np.divide(np.sum(arm * along, axis=1), square, out=np.zeros_like(square), where=square > 0.0)
+    return np.asarray(np.linalg.norm(arm - np.clip(share, 0.0, 1.0)[:, None] * along, axis=1))

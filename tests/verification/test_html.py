@@ -1,0 +1,283 @@
+"""The page shows every part of the report, and nothing in a file can change what the page does."""
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from typing import Any
+
+import numpy as np
+import pytest
+
+from deltacam.model import Block, BlockKind, Check, Drawing, Finding, LedgerEntry, Mode, Outcome, Report
+from deltacam.program.program import Program
+from deltacam.verification.html import to_html
+from deltacam.verification.verify import verify
+
+Bench = Any  # the class in conftest.py
+HOSTILE = "</style></title><script>alert(1)</script>\"' onload=x ]]>&lt;\u202e\u2066\x00\x1b[31m\ud800\ufffe\n"
+SPELLED = "</style></title><script>alert(1)</script>\"' onload=x ]]>&lt;\\u202e\\u2066\\x00"
+VOID = {"meta"}
+
+
+class Page(HTMLParser):
+    """What a browser would make of the page; refuses tags that do not nest."""
+
+    def __init__(self, content: str) -> None:
+        super().__init__(convert_charrefs=True)
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[tuple[str, str]] = []
+        self.tables: dict[str, list[list[str]]] = {}
+        self.folded: set[str] = set()
+        self.heading = ""
+        self.feed(content)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID and not self.get_starttag_text().endswith("/>"):
+            self.open.append(tag)
+        if tag == "h2":
+            self.heading = ""
+        elif tag == "tr":
+            self.tables.setdefault(self.heading, []).append([])
+        elif tag in ("td", "th"):
+            self.tables[self.heading][-1].append("")
+        elif tag == "details":
+            self.folded.add(self.heading)
+
+    def handle_endtag(self, tag: str) -> None:
+        if not self.tags or tag != self.tags[-1][0] or self.open[-1:] == [tag]:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append((self.open[-1] if self.open else "", data))
+        if self.open[-1:] == ["h2"]:
+            self.heading += data
+        if {"td", "th"} & set(self.open):
+            self.tables[self.heading][-1][-1] += data
+
+    def rows(self, heading: str) -> list[dict[str, str]]:
+        head, *rows = self.tables[heading]
+        return [dict(zip(head, row, strict=True)) for row in rows]
+
+    def all_of(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.tags if name == tag]
+
+    def text_in(self, tag: str) -> list[str]:
+        return [text for name, text in self.texts if name == tag]
+
+
+CHECKS = (
+    Check("joint range", True, worst=-3.25, limit=0.0, unit="deg", tick=800, where="joint 2"),
+    Check(
+        "feed while cutting", False, worst=104.2, limit=100.0, unit="mm/s", tick=123, where="contour 1 (layer CUT, #1A)"
+    ),
+    Check("drawing", True),
+    Check("rows", False, worst=123456.7, limit=0.0, unit="rows"),
+)
+LEDGER = tuple(
+    LedgerEntry(
+        f"{number:X}", "LINE", f"layer {number}", "", Outcome.CUT if number % 3 else Outcome.IGNORED, "", number
+    )
+    for number in range(1, 61)
+)
+FINDINGS = (Finding("an open chain is not cut", "layer 0, #2F", "close it"), Finding("no hint"))
+REPORT = Report(CHECKS, {"contours_cut": 4, "time_s": {"cut": 1.5}, "nothing": None}, LEDGER, FINDINGS)
+
+
+def page(report: Report, program: Program, drawing: Drawing | None = None, title: str = "plate") -> Page:
+    return Page(to_html(report, program, drawing=drawing, title=title))
+
+
+def test_the_verdict_comes_first_and_names_what_failed(program: Program) -> None:
+    failed = page(REPORT, program)
+    passed = page(replace(REPORT, checks=CHECKS[::2]), program)
+    assert [text for tag, text in failed.texts if tag in ("h1", "p")] == [
+        "plate",
+        "Failed",
+        "2 of 4 checks failed: feed while cutting, rows.",
+    ]
+    assert "Passed" in passed.text_in("p")
+    assert passed.text_in("title")[0] == "plate: passed"
+
+
+def test_a_report_without_checks_has_not_passed(program: Program) -> None:
+    assert "Not checked" in page(Report((), {}), program).text_in("p")
+
+
+def test_every_check_is_in_its_table_with_the_failed_ones_first(program: Program) -> None:
+    rows = page(REPORT, program).rows("Checks")
+    assert [row["check"] for row in rows] == ["feed while cutting", "rows", "joint range", "drawing"]
+    assert list(rows[0].values())[1:] == ["\u2717 failed", "104.2", "100", "mm/s", "0.3075", CHECKS[1].where]
+    assert list(rows[1].values())[1:] == ["\u2717 failed", "123457", "0", "rows", "", ""]
+    assert list(rows[2].values())[1:] == ["\u2713 passed", "-3.25", "0", "deg", "2.0000", "joint 2"]
+    assert list(rows[3].values())[1:] == ["\u2713 passed", "", "", "", "", ""]
+
+
+def test_every_entity_of_the_drawing_and_every_finding_is_listed(program: Program) -> None:
+    found = page(REPORT, program)
+    entries = [(f"#{entry.handle}", entry.layer, entry.outcome, str(entry.contour)) for entry in LEDGER]
+    rows = found.rows("Entities of the drawing")
+    assert [(row["handle"], row["layer"], row["outcome"], row["contour"]) for row in rows] == entries
+    assert "Entities of the drawing" in found.folded
+    assert "Checks" not in found.folded
+    assert [tuple(row.values()) for row in found.rows("Findings")] == [
+        (finding.what, finding.where, finding.hint) for finding in FINDINGS
+    ]
+
+
+def test_every_figure_of_the_summary_is_listed_and_none_says_none(program: Program) -> None:
+    found = page(REPORT, program)
+    figures = {row["figure"]: row["value"] for row in found.rows("All figures")}
+    assert figures == {"contours_cut": "4", "time_s: cut": "1.5", "nothing": ""}
+    assert not re.search(r"\b(None|nan|inf)\b", " ".join(text for _, text in found.texts))
+
+
+def test_every_contour_has_its_length_time_and_speeds(bench: Bench) -> None:
+    program = bench.program()
+    rows = page(verify(program, drawing=bench.drawing), program, bench.drawing).rows("Contours")
+    assert [row["contour"] for row in rows] == ["1", "2", "3", "4"]
+    assert [row["handles"] for row in rows] == [f"#{number}A, #{number}B" for number in range(1, 5)]
+    circle = rows[1]
+    block = next(block for block in program.blocks if block.kind is BlockKind.CUT and block.contour == 2)
+    time = (block.last - block.first + 1) / 400.0
+    assert float(circle["cut, mm"]) == pytest.approx(2e3 * np.pi * (6e-3 - 0.1e-3), abs=0.05)
+    assert float(circle["time, s"]) == pytest.approx(time, abs=1e-3)
+    assert float(circle["mean, mm/s"]) == pytest.approx(float(circle["cut, mm"]) / time, abs=0.1)
+    # The law of the bench has its peak at 1.875 of its mean.
+    assert float(circle["largest, mm/s"]) == pytest.approx(1.875 * float(circle["mean, mm/s"]), rel=0.01)
+
+
+def test_a_contour_that_is_not_cut_and_a_cut_that_is_not_drawn_are_in_the_table(bench: Bench) -> None:
+    program = bench.but(order=(4, 2)).program()
+    drawing = replace(bench.drawing, contours=bench.drawing.contours[:3])
+    rows = page(REPORT, program, drawing).rows("Contours")
+    assert {row["contour"]: row["cut, mm"] == "not cut" for row in rows} == {
+        "1": True,
+        "2": False,
+        "3": True,
+        "4": False,
+    }
+
+
+def test_many_handles_are_shortened(bench: Bench) -> None:
+    contours = tuple(replace(contour, handles=tuple("ABCDE")) for contour in bench.drawing.contours)
+    rows = page(REPORT, bench.program(), replace(bench.drawing, contours=contours)).rows("Contours")
+    assert {row["handles"] for row in rows} == {"#A, #B, #C and 2 more"}
+
+
+def hostile(bench: Bench) -> tuple[Report, Program, Drawing]:
+    contours = tuple(replace(c, layer=HOSTILE, handles=(HOSTILE,)) for c in bench.drawing.contours)
+    program = bench.program()
+    program = replace(
+        program,
+        blocks=tuple(replace(block, layer=HOSTILE, handles=(HOSTILE,)) for block in program.blocks),
+        drawing=replace(program.drawing, file=HOSTILE),
+        process=replace(program.process, name=HOSTILE),
+    )
+    report = Report(
+        (Check(HOSTILE, False, 1.0, 0.0, HOSTILE, 3, HOSTILE),),
+        {HOSTILE: {HOSTILE: HOSTILE}, "share_of_limit": {HOSTILE: 0.5}, "contours_cut": HOSTILE},
+        (LedgerEntry(HOSTILE, HOSTILE, HOSTILE, HOSTILE, Outcome.IGNORED, HOSTILE),),
+        (Finding(HOSTILE, HOSTILE, HOSTILE),),
+    )
+    return report, program, replace(bench.drawing, file=HOSTILE, contours=contours)
+
+
+def test_names_from_files_are_shown_and_do_nothing(bench: Bench) -> None:
+    report, program, drawing = hostile(bench)
+    content = to_html(report, program, drawing=drawing, title=HOSTILE)
+    for bad in ("<script", "]]>", "\u202e", "\u2066", "\x00", "\x1b", "\ud800", "\ufffe"):
+        assert bad not in content, bad
+    found = Page(content)
+    assert not found.all_of("script")
+    harmless = page(REPORT, bench.program(), bench.drawing)
+    assert found.text_in("style") == harmless.text_in("style")
+    names = {name for _, attributes in harmless.tags for name in attributes}
+    assert {name for _, attributes in found.tags for name in attributes} <= names
+    assert not any(name.startswith("on") or name in ("href", "src", "style") for name in names)
+    for heading in ("Checks", "Findings", "Contours", "Entities of the drawing", "All figures"):
+        assert any(SPELLED[:30] in cell for row in found.tables[heading][1:] for cell in row), heading
+    assert found.text_in("h1")[0].startswith(SPELLED)
+
+
+def test_the_page_forbids_scripts_and_everything_from_outside(program: Program) -> None:
+    content = to_html(REPORT, program, drawing=None, title="plate")
+    (policy,) = [m["content"] for m in Page(content).all_of("meta") if m.get("http-equiv") == "Content-Security-Policy"]
+    rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
+    assert rules["default-src"] == "'none'"
+    assert rules["style-src"] == "'unsafe-inline'"
+    assert rules["img-src"] == "data:"
+    assert content.index("Content-Security-Policy") < content.index("<title>")
+    assert not re.search(r"url\(|@import|<link|<iframe|<img", content)
+
+
+def test_tables_have_headings_and_pictures_have_titles(program: Program) -> None:
+    found = page(REPORT, program)
+    assert {cell.get("scope") for cell in found.all_of("th")} == {"col", "row"}
+    assert all(svg["role"] == "img" for svg in found.all_of("svg"))
+    assert [tag for tag, _ in found.tags].count("desc") == len(found.all_of("svg")) == 4
+    assert found.all_of("html") == [{"lang": "en"}]
+
+
+def test_the_charts_tell_the_largest_value_of_every_joint_and_are_thinned(bench: Bench) -> None:
+    program = bench.program()
+    q = np.tile(program.q, (1 + 200_000 // len(program.q), 1))
+    q[123_457, 1] += 1e-3
+    row = np.zeros(len(q), dtype=np.int64)
+    blocks = (Block(BlockKind.CUT, 0, len(q) - 1, 1, "CUT", ("1A",)),)
+    program = replace(program, q=q, power=row + 0.85, block=row, blocks=blocks)
+    content = to_html(REPORT, program, drawing=None, title="plate")
+    assert len(content) < 700_000
+    labels = re.findall(r"joint (\d), largest ([\d.]+) % of limit", content)
+    speed = 400.0 * np.abs(np.diff(q, axis=0)).max(axis=0) / program.robot.joints.max_speed
+    acceleration = 160_000.0 * np.abs(np.diff(q, n=2, axis=0)).max(axis=0) / program.robot.joints.max_acceleration
+    assert [joint for joint, _ in labels] == list("123123")
+    assert [float(value) for _, value in labels] == pytest.approx([*(100 * speed), *(100 * acceleration)], rel=1e-3)
+    shapes = [shape["points"].split() for shape in Page(content).all_of("polygon")]
+    assert len(shapes) == 7
+    assert all(len(shape) == 2000 for shape in shapes)
+    peak = [
+        float(place.split(",")[0])
+        for place in shapes[4]
+        if float(place.split(",")[1]) == min(float(other.split(",")[1]) for other in shapes[4])
+    ]
+    assert (peak[0] - 62.0) / (880.0 - 62.0) == pytest.approx(123_457 / len(q), abs=2e-3)
+
+
+def test_the_limits_are_lines_in_the_charts(program: Program) -> None:
+    found = page(REPORT, program)
+    assert len([path for path in found.all_of("path") if path.get("class") == "limit"]) == 2 * 3 * 2 + 1
+    texts = found.text_in("text")
+    assert texts.count("100") >= 6
+    assert texts.count("-100") == 6
+    assert "1000" in texts
+
+
+@pytest.mark.parametrize("rows", [1, 2, 3, 5])
+def test_programs_of_a_few_rows_have_a_page(program: Program, rows: int) -> None:
+    few = replace(program, q=program.q[:rows], power=program.power[:rows], block=program.block[:rows])
+    assert page(verify(few, drawing=None), few).all_of("svg")
+
+
+def test_a_frame_and_a_program_out_of_reach_have_a_page(program: Program) -> None:
+    frame = replace(
+        program, mode=Mode.FRAME, blocks=(Block(BlockKind.RAPID, 0, len(program.q) - 1),), block=0 * program.block
+    )
+    assert "frame" in page(verify(frame, drawing=None), frame).text_in("dd")
+    q = program.q.copy()
+    q[3] = 3.0
+    lost = replace(program, q=q)
+    found = page(verify(lost, drawing=None), lost)
+    assert "Failed" in found.text_in("p")
+    assert {row["cut, mm"] for row in found.rows("Contours")} == {"unknown"}
+
+
+def test_the_same_report_gives_the_same_page(bench: Bench) -> None:
+    program = bench.program()
+    report = verify(program, drawing=bench.drawing)
+    assert to_html(report, program, drawing=bench.drawing, title="plate") == to_html(
+        report, program, drawing=bench.drawing, title="plate"
+    )
