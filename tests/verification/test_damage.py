@@ -79,51 +79,30 @@ class Case(NamedTuple):
     program: Program
 
 
-Mutation = Callable[["Case"], Program | tuple[Program, Drawing]]
+Mutation = Callable[[Case], Program | tuple[Program, Drawing]]
 
 
 MUTATIONS: dict[str, tuple[Mutation, str]] = {
-    "a setpoint moved by 1.1 tolerances": (
-        lambda c: c.bench.shifted_outwards(c.program, 22e-6),
-        "deviation at ticks",
-    ),
+    "a setpoint moved by 1.1 tolerances": (lambda c: c.bench.shifted_outwards(c.program, 22e-6), "deviation at ticks"),
     "a contour moved by 1.1 tolerances": (
         lambda c: (c.program, moved(c.bench.drawing, 2, 22e-6)),
         "deviation at ticks",
     ),
-    "a row lost, the file repaired": (
-        lambda c: without_rows(
-            c.program, slice(first_row(c.program, BlockKind.CUT), first_row(c.program, BlockKind.CUT) + 1)
-        ),
-        "feed while cutting",
-    ),
+    "a row lost, the file repaired": (lambda c: without_a_row(c.program), "feed while cutting"),
     "a row lost in the rows only": (lambda c: keep_rows(c.program, np.arange(len(c.program.q)) != 500), "block table"),
-    "laser on for a tick of a rapid": (
-        powered(BlockKind.RAPID, 0.85),
-        "laser off outside cuts",
-    ),
+    "laser on for a tick of a rapid": (powered(BlockKind.RAPID, 0.85), "laser off outside cuts"),
     "laser on after the last cut": (
         lambda c: set_power(c.program, c.program.blocks[-1].first, 0.85),
         "laser off outside cuts",
     ),
-    "laser off for a tick of a cut": (
-        powered(BlockKind.CUT, 0.0),
-        "laser on in all cuts",
-    ),
-    "laser weak for a tick": (
-        powered(BlockKind.CUT, 0.8),
-        "laser on in all cuts",
-    ),
-    "laser off in a pierce": (
-        powered(BlockKind.PIERCE, 0.0),
-        "laser on in all cuts",
-    ),
+    "laser off for a tick of a cut": (powered(BlockKind.CUT, 0.0), "laser on in all cuts"),
+    "laser weak for a tick": (powered(BlockKind.CUT, 0.8), "laser on in all cuts"),
+    "laser off in a pierce": (powered(BlockKind.PIERCE, 0.0), "laser on in all cuts"),
     "power 1.2": (powered(BlockKind.CUT, 1.2), "laser power from 0 to 1"),
     "power -0.1": (lambda c: set_power(c.program, 0, -0.1), "laser power from 0 to 1"),
     "laser on in a dry run": (lambda c: replace(c.program, mode=Mode.DRY_RUN), "laser off outside cuts"),
     "laser on in a frame": (lambda c: replace(c.program, mode=Mode.FRAME), "laser off outside cuts"),
     "a contour missing": (lambda c: c.bench.but(order=(4, 3, 1)).program(), "every contour cut once"),
-    "a contour missing, its length": (lambda c: c.bench.but(order=(4, 3, 1)).program(), "uncut length"),
     "a contour doubled": (lambda c: c.bench.but(order=(4, 3, 2, 2, 1)).program(), "every contour cut once"),
     "a contour cut twice in one go": (lambda c: c.bench.but(turns=1.5).program(), "cut length"),
     "a contour 1 % too long": (lambda c: c.bench.but(turns=0.98).program(), "uncut length"),
@@ -166,10 +145,6 @@ MUTATIONS: dict[str, tuple[Mutation, str]] = {
         "tool acceleration",
     ),
     "rapids too fast": (lambda c: c.bench.but(rapid_speed=3.0, rapid_acceleration=1e3).program(), "tool speed"),
-    "rapids too fast for the joints": (
-        lambda c: c.bench.but(rapid_speed=3.0, rapid_acceleration=1e3).program(),
-        "joint speed",
-    ),
     "rapids too hard for the joints": (lambda c: c.bench.but(rapid_acceleration=60.0).program(), "joint acceleration"),
     "a start at speed": (lambda c: without_rows(c.program, slice(0, 20)), "rest at both ends"),
     "a start beside the park position": (lambda c: without_rows(c.program, slice(0, 20)), "park position"),
@@ -209,15 +184,9 @@ MUTATIONS: dict[str, tuple[Mutation, str]] = {
         lambda c: replace(c.program, blocks=tuple(replace(x, kind=BlockKind.RAPID) for x in c.program.blocks)),
         "laser off outside cuts",
     ),
-    "arms 1 mm longer in the meta": (
-        lambda c: with_geometry(c.program, upper_arm=0.301),
-        "sheet plane",
-    ),
+    "arms 1 mm longer in the meta": (lambda c: with_geometry(c.program, upper_arm=0.301), "sheet plane"),
     "radius 1 mm larger in the meta": (lambda c: with_geometry(c.program, base_radius=0.131), "sheet plane"),
-    "a joint turned by 0.01 degrees": (
-        lambda c: turned(c.program, np.radians(0.01)),
-        "deviation at ticks",
-    ),
+    "a joint turned by 0.01 degrees": (lambda c: turned(c.program, np.radians(0.01)), "deviation at ticks"),
     "two joints swapped": (lambda c: replace(c.program, q=c.program.q[:, [1, 0, 2]]), "deviation at ticks"),
     "an arm folded inwards": (lambda c: replace(c.program, q=set_row(c.program.q, 700, -3.0)), "possible poses"),
     "another drawing": (lambda c: (c.program, replace(c.bench.drawing, sha256="cd" * 32)), "drawing"),
