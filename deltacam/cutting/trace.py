@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 
 from deltacam.geometry import curve as curves
-from deltacam.geometry.element import Element, meeting_points, shifted, turn_between
+from deltacam.geometry.element import Element, meeting_point, shifted, turn_between
 from deltacam.model import Array, Curve, IntArray
 
 FIT: Final = 1e-6
@@ -161,11 +161,8 @@ def _join(source: Source, label: int, following: int, about: Array) -> Array:
         end, start = source.offset_end(label // 2), source.offset_start(following // 2)
         if np.hypot(*(end - start)) <= _SAME_POINT:
             return np.asarray(0.5 * (end + start))
-    places = meeting_points(source.element(label), source.element(following))
-    gaps = np.hypot(*(places - about).T)
-    if len(places) and gaps.min() <= _SEARCH:
-        return np.asarray(places[np.argmin(gaps)])
-    return about
+    place = meeting_point(source.element(label), source.element(following), about)
+    return about if place is None or np.hypot(*(place - about)) > _SEARCH else place
 
 
 def _assemble(source: Source, labels: list[int], first: list[int], ring: Array) -> Curve | None:

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from deltacam.model import Array
+
+_ALMOST_STRAIGHT: Final = 10.0
+_STRAIGHT: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,7 +46,7 @@ def shifted(start: Array, heading: float, curvature: float, shift: float) -> Ele
         a line or circle; the radius has the other sign where the shift goes beyond the centre.
     """
     left = np.array([-np.sin(heading), np.cos(heading)])
-    if curvature == 0.0:
+    if abs(curvature) < _STRAIGHT:
         return Element(anchor=start - shift * left, heading=heading)
     return Element(anchor=start + left / curvature, radius=1.0 / curvature + shift)
 
@@ -54,15 +58,49 @@ def turn_between(element: Element, start: Array, end: Array, about: float) -> fl
     return turn + 2.0 * np.pi * round((about - turn) / (2.0 * np.pi))
 
 
-def meeting_points(first: Element, second: Element) -> Array:
-    """The points that two elements share, (0, 2), (1, 2) or (2, 2) m; tangency counts as one point."""
-    if first.radius == 0.0 and second.radius == 0.0:
-        return _line_line(first, second)
-    if first.radius == 0.0:
-        return _line_circle(first, second)
-    if second.radius == 0.0:
-        return _line_circle(second, first)
-    return _circle_circle(first, second)
+def meeting_point(first: Element, second: Element, about: Array) -> Array | None:
+    """The point nearest to ``about``, (2,) m, that two elements share; None where they share none."""
+    near, also_near = _flattened(first, about), _flattened(second, about)
+    if near.radius == 0.0 and also_near.radius == 0.0:
+        places = _line_line(near, also_near)
+    elif near.radius == 0.0:
+        places = _line_circle(near, also_near)
+    elif also_near.radius == 0.0:
+        places = _line_circle(also_near, near)
+    else:
+        places = _circle_circle(near, also_near)
+    if not len(places):
+        return None
+    return _polished(first, second, places[np.argmin(np.hypot(*(places - about).T))])
+
+
+def _flattened(element: Element, about: Array) -> Element:
+    """The tangent beside ``about`` in place of a circle so large that squares of its radius lose micrometres."""
+    if abs(element.radius) < _ALMOST_STRAIGHT:
+        return element
+    distance, outward = _offset(element, about)
+    return Element(about - distance * outward, heading=float(np.arctan2(outward[0], -outward[1])))
+
+
+def _polished(first: Element, second: Element, place: Array) -> Array:
+    """The meeting point near ``place`` by Newton's method."""
+    for _ in range(3):
+        (gap_a, a), (gap_b, b) = _offset(first, place), _offset(second, place)
+        cross = a[0] * b[1] - a[1] * b[0]
+        if abs(cross) < 1e-6:
+            break
+        place = place - np.array([gap_a * b[1] - gap_b * a[1], gap_b * a[0] - gap_a * b[0]]) / cross
+    return place
+
+
+def _offset(element: Element, place: Array) -> tuple[float, Array]:
+    """How far ``place`` is from an element, signed, and the direction in which that grows."""
+    arm = place - element.anchor
+    if element.radius == 0.0:
+        normal = np.array([-np.sin(element.heading), np.cos(element.heading)])
+        return float(arm @ normal), normal
+    distance = float(np.hypot(*arm))
+    return distance - abs(element.radius), arm / max(distance, 1e-15)
 
 
 def _line_line(first: Element, second: Element) -> Array:

@@ -105,7 +105,8 @@ def _blend(curve: Curve, angle: Array, wanted: BoolArray, deviation: float) -> _
     before, after, turn = np.zeros_like(reach), np.zeros_like(reach), np.zeros_like(reach)
     for _ in range(_ROUNDS):
         s_in, s_out, t, off, ok = _solve(legs, angle, side * radius, reach)
-        good = open_ & ok & (radius >= _SMALLEST_RADIUS) & (off <= deviation * _ROUNDING) & (s_in <= limit_in) & (s_out <= limit_out)
+        fits = (radius >= _SMALLEST_RADIUS) & (off <= deviation * _ROUNDING)
+        good = open_ & ok & fits & (s_in <= limit_in) & (s_out <= limit_out)
         before, after, turn = np.where(good, s_in, before), np.where(good, s_out, after), np.where(good, t, turn)
         found |= good
         open_ &= ~good

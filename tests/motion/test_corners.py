@@ -1,5 +1,6 @@
 """Corners, against distances measured by shapely."""
 
+import itertools
 import math
 
 import numpy as np
@@ -49,7 +50,7 @@ def test_polygons_of_every_angle_and_size_become_drivable(seed: int) -> None:
     parts = pieces(curves.polygon(points), corner="round", deviation=DEVIATION)
     assert sum(curves.length(part) for part in parts) <= edges.sum() + float(np.hypot(*(points[-1] - points[0])))
     assert all(worst_kink(part) < 1e-5 and curves.lengths(part).min() > 0.0 for part in parts)
-    for before, after in zip(parts[:-1], parts[1:], strict=True):
+    for before, after in itertools.pairwise(parts):
         assert before.points[-1] == pytest.approx(after.points[0], abs=1e-12)
 
 
