@@ -123,3 +123,10 @@ def test_the_worst_tick_is_named_with_its_contour_layer_handle_and_place(bench: 
     assert found.where.endswith("mm, contour 2 (layer CUT, #2A)")
     x, y = (float(word) for word in found.where.split()[1:4:2])
     assert np.hypot(x + 15.0, y) == pytest.approx(6.0 - 0.1 + 0.04, abs=1e-3)
+
+
+def test_the_tick_at_which_the_laser_goes_off_must_be_on_the_path_too(bench: Bench, program: Program) -> None:
+    last = next(block.last for block in program.blocks if block.kind is BlockKind.CUT and block.contour == 2)
+    found = verify(bench.shifted(program, last + 1, 30e-6, 30e-6), drawing=bench.drawing)
+    assert "deviation at ticks" in bench.failed(found)
+    assert bench.check(found, "deviation at ticks").tick == last + 1

@@ -204,3 +204,15 @@ def test_swapped_rows_are_found_even_with_a_repaired_hash(bench: Bench, program:
         == "expected tick 497, found 498 in line 501; 2 of 2686 rows differ"
     )
     assert "tick continuity" in bench.failed(report)
+
+
+@pytest.mark.parametrize("end", [0, -1])
+@pytest.mark.parametrize(("step", "passes"), [(68e-6, True), (76e-6, False)])
+def test_the_ends_may_move_in_one_tick_as_far_as_from_rest(
+    bench: Bench, program: Program, end: int, step: float, passes: bool
+) -> None:
+    limit = 0.5 * bench.robot.tool.max_acceleration / 400**2
+    assert limit == pytest.approx(71.9e-6, abs=0.1e-6)
+    found = bench.check(verify(bench.shifted(program, end % len(program.q), step), drawing=None), "rest at both ends")
+    assert found.worst == pytest.approx(step * 1e6, abs=3.5)
+    assert found.passed is passes
