@@ -28,7 +28,7 @@ _FOOTER: Final = 92.0
 _ERROR: Final = 1 / 6000  # of the part: how far a drawn path may leave the setpoints
 _MAX_RUNS: Final = 12_000  # stretches of one colour
 _MAX_NUMBERS: Final = 60  # cuts that are numbered
-_SHEET_SHOWN: Final = 1.4  # times the part: a larger sheet is not shown
+_SHEET_SHOWN: Final = 1.4  # how many times smaller the sheet may make the part
 _VIRIDIS: Final = ("440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725")
 _STYLE: Final = """
 .dc{--paper:#fff;--ink:#1f2328;--soft:#59636e;--line:#818b98;--part:#eaeef2;--edge:#d1d9e0;LIGHT}
@@ -65,12 +65,11 @@ def draw(evidence: Evidence, drawing: Drawing | None) -> str:
         parts += [_paths(evidence.sheet, subject, _colour(speed, step, colours), view), _starts(evidence, view)]
     about = evidence.impossible[1] or f"path within {to_um(view.error) + 1.0:.0f} µm of the setpoints"
     height = view.height + _FOOTER
-    box = f'width="{_WIDTH:.0f}" height="{height:.0f}"'
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="dc" viewBox="0 0 {_WIDTH:.0f} {height:.0f}" role="img">'
         f"<title>{shown(evidence.program.drawing.file)}</title>"
         f"<desc>{view.caption}; tool path coloured by speed; {shown(about)}</desc>"
-        f'<style>{_style(colours)}</style><rect {box} rx="10" fill="var(--paper)"/>'
+        f'<style>{_style(colours)}</style><rect width="100%" height="100%" rx="10" fill="var(--paper)"/>'
         f"{''.join(parts)}{_footer(view, step, colours)}</svg>\n"
     )
 
@@ -145,12 +144,11 @@ class _View:
         )
         part = np.array(boxes).reshape(-1, 2) if boxes else places if len(places) else np.zeros((1, 2))
         width, depth = np.ptp(part, axis=0)
-        sheet = to_sheet(evidence.program, _sheet_edge(evidence.robot.workspace))
-        if np.ptp(sheet, axis=0).max() > _SHEET_SHOWN * max(width, depth):
+        seen, sheet = np.vstack([part, places]), to_sheet(evidence.program, _sheet_edge(evidence.robot.workspace))
+        if _scale(seen) > _SHEET_SHOWN * _scale(np.vstack([seen, sheet])):
             sheet = np.zeros((0, 2))
-        seen = np.vstack([part, places, sheet])
-        low, extent = seen.min(axis=0), np.maximum(np.ptp(seen, axis=0), 1e-3)
-        scale = float(min((_WIDTH - 2 * _MARGIN) / extent[0], _TALLEST / extent[1]))
+        seen = np.vstack([seen, sheet])
+        low, extent, scale = seen.min(axis=0), np.ptp(seen, axis=0), _scale(seen)
         height = max(float(extent[1]) * scale, 120.0) + 2 * _MARGIN
         x, y = ((_WIDTH, height) + np.array((-1.0, 1.0)) * (2.0 * low + extent) * scale) / 2.0
         caption = f"{'part' if boxes else 'path'} {to_mm(width):.2f} \u00d7 {to_mm(depth):.2f} mm"
@@ -172,6 +170,12 @@ class _View:
         (x, y), k = self.origin, self.per_metre * 1e-6
         place = f'transform="translate({x:.3f} {y:.3f}) scale({k:.9g} {-k:.9g})"'
         return f'<path {place} {style} stroke-width="{width / k:.4g}" d="{moves.replace(" -", "-")}"/>'
+
+
+def _scale(points: Array) -> float:
+    """The pixels per metre at which the points fill the picture."""
+    width, height = np.maximum(np.ptp(points, axis=0), 1e-3)
+    return float(min((_WIDTH - 2 * _MARGIN) / width, _TALLEST / height))
 
 
 def _sheet_edge(sheet: Workspace) -> Array:
@@ -245,6 +249,7 @@ def _footer(view: _View, step: float, colours: int) -> str:
     bar = max(power * factor for factor in (1.0, 2.0, 5.0) if power * factor * view.per_metre <= 150.0)
     top, left, right = view.height + 14.0, _MARGIN, _WIDTH - _MARGIN - 30.0 * colours
     parts = [
+        f'<rect y="{view.height:.2f}" width="100%" height="{_FOOTER:.0f}" rx="10" fill="var(--paper)"/>',
         f'<text x="{left}" y="{top + 16}">{view.caption}</text>',
         f'<path d="M{left} {top + 32}v8h{bar * view.per_metre:.2f}v-8" fill="none" stroke="var(--soft)"/>',
         f'<text x="{left}" y="{top + 61}">{to_mm(bar):g} mm</text>',
