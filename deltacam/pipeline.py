@@ -81,6 +81,8 @@ class Outputs:
         for path in (self.program, self.report_json, self.report_html):
             try:
                 path.unlink(missing_ok=True)
+            except NotADirectoryError:
+                continue  # so nothing is left there
             except OSError as problem:
                 reason = (problem.strerror or str(problem)).lower()
                 hint = "choose another folder with -o, or get permission there"

@@ -56,7 +56,7 @@ class LateGroup(click.Group):
 @click.version_option(package_name="deltacam", prog_name="deltacam")
 @click.option("--traceback", is_flag=True, help="On a fault of deltacam itself, show where it happened.")
 def cli(traceback: bool) -> None:
-    r"""From a DXF drawing to a verified robot program for a delta-robot laser cutter.
+    """From a DXF drawing to a verified robot program for a delta-robot laser cutter.
 
     \b
     deltacam plan part.dxf                  writes part.program.csv and its reports

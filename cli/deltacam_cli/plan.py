@@ -45,7 +45,7 @@ def command(
     as_json: bool,
     **single_values: str | None,
 ) -> None:
-    r"""Plan DRAWING (a DXF file) and verify the program.
+    """Plan DRAWING (a DXF file) and verify the program.
 
     Writes NAME.program.csv, NAME.report.json and NAME.report.html. The program is only written if every check passed.
 

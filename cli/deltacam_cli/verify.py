@@ -15,17 +15,16 @@ from deltacam_cli.main import EXIT_FAILED, show_json
 @click.option("--robot", help="Also check that the program is for this robot: a built-in name or a file.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the summary.")
 def command(program: Path, drawing: Path | None, robot: str | None, as_json: bool) -> None:
-    r"""Verify PROGRAM, trusting nothing the planner said.
+    """Verify PROGRAM, trusting nothing the planner said.
 
     Positions are recomputed from the joint setpoints, and the cut is measured against the drawing itself.
 
     \b
     deltacam verify out/part.program.csv --drawing part.dxf
     """
+    from deltacam.pipeline import verify
     from deltacam.verification.report_json import to_dict
     from deltacam.verification.report_text import to_text
-
-    from deltacam.pipeline import verify
 
     report = verify(program, drawing=drawing, robot=robot)
     if as_json:

@@ -56,12 +56,14 @@ def offset(contours: Sequence[Contour], *, kerf: float) -> KerfResult:
         InfeasibleError: the kerf swallows a contour, or the cut of one runs into another.
     """
     results = [_offset_one(contour, kerf) for contour in contours]
+    _refuse_swallowed([contour for contour, result in zip(contours, results, strict=True) if not result.cuts], kerf)
     cuts = tuple(cut for result in results for cut in result.cuts)
     _refuse_collisions(contours, cuts, kerf)
     return KerfResult(cuts, tuple(finding for result in results for finding in result.findings))
 
 
 def _offset_one(contour: Contour, kerf: float) -> KerfResult:
+    """The cuts of one contour; none where the kerf swallows it."""
     if kerf == 0.0:
         return KerfResult((_cut(contour, contour.curve),), ())
     shift = -kerf / 2.0 if contour.is_hole else kerf / 2.0
@@ -69,15 +71,23 @@ def _offset_one(contour: Contour, kerf: float) -> KerfResult:
     region = shapely.Polygon(points if len(points) >= 3 else None).buffer(shift, quad_segs=_quad_segments(kerf / 2.0))
     parts = [shapely.geometry.polygon.orient(part) for part in getattr(region, "geoms", [region])]
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors) if ring.length > SMALLEST_RING]
-    if not rings:
-        raise InfeasibleError(
-            f"a kerf of {to_mm(kerf):.3g} mm swallows this contour {_size(contour.curve)}",
-            where=f"{contour.where} at {_place(contour.curve.points.mean(axis=0))}",
-            hint="use a narrower kerf (--kerf), or take the contour out of the drawing",
-        )
     source = Source(contour.curve, points, segment, shift)
     traced = [trace_ring(source, shapely.get_coordinates(ring)[:-1]) for ring in rings]
     return KerfResult(tuple(_cut(contour, ring) for ring in traced), _pieces_finding(contour, rings, kerf))
+
+
+def _refuse_swallowed(swallowed: Sequence[Contour], kerf: float) -> None:
+    """Refuse contours that leave no room for the beam, and say where they all are."""
+    if not swallowed:
+        return
+    first, *others = swallowed
+    places = [f"{other.number} at {_place(other.curve.points.mean(axis=0))}" for other in others]
+    more = f"; also contours {', '.join(places)}" if places else ""
+    raise InfeasibleError(
+        f"a kerf of {to_mm(kerf):.3g} mm swallows this contour {_size(first.curve)}{more}",
+        where=f"{first.where} at {_place(first.curve.points.mean(axis=0))}",
+        hint="use a narrower kerf (--kerf), or take what is too small out of the drawing",
+    )
 
 
 def _quad_segments(radius: float) -> int:
@@ -91,7 +101,7 @@ def _cut(contour: Contour, curve: Curve) -> Cut:
 
 
 def _pieces_finding(contour: Contour, rings: Sequence[shapely.LinearRing], kerf: float) -> tuple[Finding, ...]:
-    if len(rings) == 1:
+    if len(rings) <= 1:
         return ()
     places = ", ".join(_place(shapely.get_coordinates(ring.centroid)[0]) for ring in rings)
     return (

@@ -111,7 +111,8 @@ def _outline(cut: Cut) -> shapely.LineString:
 
 def _nearest_place(cut: Cut, place: Array) -> Array:
     segment, distance, _ = curves.nearest(cut.curve, place)
-    return curves.evaluate(cut.curve, np.array([segment]), np.array([distance]))[0][0]
+    points, _ = curves.evaluate(cut.curve, np.array([segment]), np.array([distance]))
+    return np.asarray(points[0])
 
 
 def _walk(cuts: Sequence[Cut], sequence: IntArray, start: tuple[float, float]) -> tuple[Cut, ...]:

@@ -51,7 +51,7 @@ def curvatures(curve: Curve) -> Array:
     """The signed curvature of each segment, (M,) 1/m; positive to the left. A segment of length 0 has curvature 0."""
     chord = np.hypot(*chords(curve).T)
     rise = 4.0 * curve.bulges / (1.0 + curve.bulges**2)
-    return np.divide(rise, chord, out=np.zeros_like(chord), where=chord > 0.0)
+    return np.asarray(np.divide(rise, chord, out=np.zeros_like(chord), where=chord > 0.0))
 
 
 def headings(curve: Curve) -> tuple[Array, Array]:

@@ -8,6 +8,7 @@ squared path speed, x + 2 d u at its end, a row a u + b x <= g at the end become
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -179,13 +180,12 @@ def _right_hand_side(robot: Robot, limits: Limits) -> Array:
 def _squared_speed_bound(ends: list[_End]) -> Array:
     """The largest squared path speed at every gridpoint, (I + 1,), from the intervals on both sides of it."""
     start, end = ends
-    return np.minimum(np.append(start.bound, np.inf), np.insert(end.bound, 0, np.inf))
+    return np.asarray(np.minimum(np.append(start.bound, np.inf), np.insert(end.bound, 0, np.inf)))
 
 
 def _solve(grid: Array, ends: list[_End], bound: Array, limit: Array, where: str) -> Array:
     """The squared speed at every gridpoint, (I + 1,) m2/s2, 0 at both ends."""
     # toppra takes long to import, because it loads matplotlib.
-    import toppra
     from toppra.algorithm import TOPPRA
     from toppra.constraint import LinearConstraint
 
@@ -208,7 +208,7 @@ def _solve(grid: Array, ends: list[_End], bound: Array, limit: Array, where: str
             right = np.concatenate([limit, limit])
             return a_all, b_all, np.zeros_like(a_all), np.eye(a.shape[1]), right, None, speed
 
-    toppra.setup_logging("ERROR")
+    logging.getLogger("toppra").setLevel(logging.ERROR)  # what it warns of is found out, and said, below
     solver = TOPPRA(
         [Rows()], _Interval(grid), gridpoints=grid, solver_wrapper="seidel", parametrizer="ParametrizeConstAccel"
     )

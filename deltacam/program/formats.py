@@ -61,6 +61,8 @@ def read_program(path: str | Path) -> Program:
         ProgramError: the file cannot be opened or interpreted.
     """
     path = Path(path)
+    if not path.exists():
+        raise ProgramError("there is no such file", where=str(path), hint="check the name and the folder")
     known = format_of(path)
     try:
         with path.open("rb") as stream:

@@ -105,6 +105,12 @@ def test_a_swallowed_hole_is_refused_with_its_place() -> None:
     assert "--kerf" in caught.value.hint
 
 
+def test_all_swallowed_holes_are_named_at_once() -> None:
+    holes = [contour(curves.circle(np.array([0.01 * n, 0.0]), 1e-4), number=n, depth=1) for n in (1, 2, 3)]
+    with pytest.raises(InfeasibleError, match=r"also contours 2 at \(20.000, 0.000\) mm, 3 at \(30.000, 0.000\) mm"):
+        offset(holes, kerf=3e-4)
+
+
 def test_a_hole_with_a_narrow_neck_becomes_two_cuts_and_a_finding() -> None:
     points = [
         (0, 0),

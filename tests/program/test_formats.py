@@ -38,6 +38,7 @@ def test_a_name_of_no_format_is_refused_with_the_right_one(tmp_path: Path, progr
     with pytest.raises(ProgramError, match="not that of a program file") as caught:
         write_program(program, tmp_path / name)
     assert ".program.csv" in caught.value.hint
+    (tmp_path / name).touch()
     with pytest.raises(ProgramError, match="not that of a program file"):
         read_program(tmp_path / name)
 
