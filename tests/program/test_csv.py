@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deltacam.errors import ProgramError
@@ -56,6 +56,7 @@ def assert_equal(found: Program, expected: Program) -> None:
 
 
 @pytest.mark.parametrize("name", sorted(FORMATS))
+@settings(deadline=None)
 @given(rows=ROWS)
 def test_what_is_written_comes_back_and_is_written_the_same(
     name: str, with_rows: Callable[..., Program], rows: list[tuple[float, float, float, float]]
@@ -71,6 +72,7 @@ def test_what_is_written_comes_back_and_is_written_the_same(
     assert second.getvalue() == first.getvalue()
 
 
+@settings(deadline=None)
 @given(layer=NASTY, handle=NASTY)
 def test_any_name_survives_and_stays_on_its_line(program: Program, layer: str, handle: str) -> None:
     block = Block(BlockKind.CUT, 0, 5, 1, layer, (handle,))
@@ -231,11 +233,13 @@ def test_a_file_that_cannot_be_interpreted_is_refused_with_its_line(program: Pro
     assert problem.what.isprintable()
 
 
+@settings(deadline=None)
 @given(st.binary(max_size=300))
 def test_arbitrary_bytes_are_refused(content: bytes) -> None:
     refused(content)
 
 
+@settings(deadline=None)
 @given(st.data())
 def test_a_change_of_any_byte_of_the_rows_is_refused_or_reported(program: Program, data: st.DataObject) -> None:
     content = bytearray(written(program))

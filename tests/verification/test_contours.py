@@ -130,3 +130,15 @@ def test_the_tick_at_which_the_laser_goes_off_must_be_on_the_path_too(bench: Ben
     found = verify(bench.shifted(program, last + 1, 30e-6, 30e-6), drawing=bench.drawing)
     assert "deviation at ticks" in bench.failed(found)
     assert bench.check(found, "deviation at ticks").tick == last + 1
+
+
+def test_a_lead_in_may_stand_between_a_pierce_and_its_cut(bench: Bench, program: Program) -> None:
+    blocks = list(program.blocks)
+    index = next(i for i, block in enumerate(blocks) if block.kind is BlockKind.CUT)
+    cut = blocks[index]
+    lead = replace(cut, kind=BlockKind.LEAD_IN, last=cut.first + 4)
+    blocks[index : index + 1] = [lead, replace(cut, first=cut.first + 5)]
+    column = np.repeat(np.arange(len(blocks)), [block.last - block.first + 1 for block in blocks])
+    report = verify(replace(program, blocks=tuple(blocks), block=column), drawing=bench.drawing)
+    assert bench.failed(report) == set()
+    assert report.summary["time_s"]["lead_in"] == pytest.approx(5 / 400)

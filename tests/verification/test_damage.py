@@ -105,7 +105,8 @@ MUTATIONS: dict[str, tuple[Mutation, str]] = {
     "a contour missing": (lambda c: c.bench.but(order=(4, 3, 1)).program(), "every contour cut once"),
     "a contour doubled": (lambda c: c.bench.but(order=(4, 3, 2, 2, 1)).program(), "every contour cut once"),
     "a contour cut twice in one go": (lambda c: c.bench.but(turns=1.5).program(), "cut length"),
-    "a contour 1 % too long": (lambda c: c.bench.but(turns=0.98).program(), "uncut length"),
+    "contours cut 3 % too far": (lambda c: c.bench.but(turns=1.03).program(), "cut length"),
+    "contours cut 2 % too little": (lambda c: c.bench.but(turns=0.98).program(), "uncut length"),
     "an unknown contour": (
         lambda c: (c.program, replace(c.bench.drawing, contours=c.bench.drawing.contours[:3])),
         "cuts of drawn contours only",
@@ -158,6 +159,10 @@ MUTATIONS: dict[str, tuple[Mutation, str]] = {
     "beside the sheet": (lambda c: c.bench.but(placement=Placement(0.13, 0.0, 0.0, -0.65)).program(), "sheet area"),
     "moved while piercing": (
         lambda c: c.bench.shifted(c.program, first_row(c.program, BlockKind.PIERCE), 2e-6),
+        "rest while piercing",
+    ),
+    "moved at the end of a pierce": (
+        lambda c: c.bench.shifted(c.program, first_row(c.program, BlockKind.CUT, share=0.0), 2e-6),
         "rest while piercing",
     ),
     "pierced too short": (lambda c: c.bench.but(pierce_ticks=19).program(), "pierce before every cut"),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Polygon
 
@@ -26,6 +26,7 @@ def gears(draw: st.DrawFn) -> Curve:
     return Curve(points=points, bulges=np.array(bulges))
 
 
+@settings(deadline=None)
 @given(curve=gears(), depth=st.integers(0, 3), kerf=st.floats(1e-5, 2e-3))
 def test_every_point_of_the_path_is_half_a_kerf_from_the_contour_on_the_right_side(
     curve: Curve, depth: int, kerf: float

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deltacam.verification import near
@@ -22,6 +22,7 @@ def exact(lines: list[np.ndarray], points: np.ndarray, *, closed: bool) -> np.nd
     return shapely.distance(shapely.GeometryCollection(whole), shapely.points(points))
 
 
+@settings(deadline=None)
 @given(lines=POLYLINES, points=st.lists(PLACES, min_size=1, max_size=30), closed=st.booleans())
 def test_the_distance_is_exact_above_the_bound_and_never_crosses_it(
     lines: list[list[tuple[float, float]]], points: list[tuple[float, float]], closed: bool
@@ -36,6 +37,7 @@ def test_the_distance_is_exact_above_the_bound_and_never_crosses_it(
     assert (found[true <= bound - 1e-12] <= bound).all()
 
 
+@settings(deadline=None)
 @given(line=st.lists(PLACES, min_size=2, max_size=6), along=st.floats(0.0, 1.0), closed=st.booleans())
 def test_a_point_on_the_line_has_no_distance(line: list[tuple[float, float]], along: float, closed: bool) -> None:
     array = np.array(line)

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deltacam.model import Check, Finding, LedgerEntry, Outcome, Report
@@ -80,6 +80,7 @@ def test_many_findings_do_not_fill_the_screen(program: Program) -> None:
     assert "and 92 more" in text
 
 
+@settings(deadline=None)
 @given(st.text(alphabet=st.characters(codec=None, categories=None)))
 def test_plain_text_is_printable_and_short(text: str) -> None:
     shown = plain(text)
