@@ -23,6 +23,9 @@ EXIT_INPUT: Final = 2
 EXIT_FAULT: Final = 3
 EXIT_INTERRUPTED: Final = 130
 
+LONGEST_MESSAGE: Final = 4000
+"""Characters of a message that are shown; a hostile file may hold a name of any length."""
+
 
 class LateGroup(click.Group):
     """A group whose commands are imported when they are used, so that ``--help`` is instant."""
@@ -107,10 +110,12 @@ def _refused_by_click(problem: click.ClickException, as_json: bool) -> int:
 def _refused(what: str, where: str, hint: str, as_json: bool) -> int:
     if as_json:
         show_json({"passed": False, "error": {"what": what, "where": where, "hint": hint}})
-    place = f"{printable(where)}: " if where else ""
-    click.echo(f"error: {place}{printable(what)}", err=True)
+    from deltacam.verification.plain import plain
+
+    message = f"{where}: {what}" if where else what
+    click.echo(f"error: {plain(message, longest=LONGEST_MESSAGE)}", err=True)
     if hint:
-        click.echo(f"hint: {printable(hint)}", err=True)
+        click.echo(f"hint: {plain(hint, longest=LONGEST_MESSAGE)}", err=True)
     return EXIT_INPUT
 
 
@@ -125,8 +130,3 @@ def _fault(problem: Exception, show: bool, as_json: bool) -> int:
 def show_json(result: dict[str, Any]) -> None:
     """Print the one JSON object of ``--json``."""
     click.echo(json.dumps(result, allow_nan=False, indent=2))
-
-
-def printable(text: str) -> str:
-    """The text with control characters made visible, because names of files and layers come from strangers."""
-    return "".join(char if char.isprintable() or char == " " else f"\\x{ord(char):02x}" for char in text)

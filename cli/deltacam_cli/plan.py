@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from deltacam_cli import options
-from deltacam_cli.main import EXIT_FAILED, printable, show_json
+from deltacam_cli.main import EXIT_FAILED, LONGEST_MESSAGE, show_json
 from deltacam_cli.progress import ProgressLine
 
 if TYPE_CHECKING:
@@ -91,6 +91,7 @@ def _process(name: str, *, kerf: str | None, feed: str | None, tolerance: str | 
 
 
 def _show(planned: Planned, outputs: Outputs, *, as_json: bool) -> None:
+    from deltacam.verification.plain import plain
     from deltacam.verification.report_json import to_dict
     from deltacam.verification.report_text import to_text
 
@@ -101,4 +102,4 @@ def _show(planned: Planned, outputs: Outputs, *, as_json: bool) -> None:
         return
     click.echo(to_text(planned.report))
     for path in files:
-        click.echo(f"wrote {printable(str(path))}")
+        click.echo(f"wrote {plain(str(path), longest=LONGEST_MESSAGE)}")

@@ -19,7 +19,7 @@ from deltacam.model import Array, BoolArray, Corner, Curve
 SHARPEST_PASSED: Final = np.radians(2.0)
 """A corner that turns by less, rad, is rounded even where corners are stopped at: the drawing is uneven there."""
 
-_TANGENT: Final = 1e-9
+_TANGENT: Final = 5e-6
 _SHORTEST_SEGMENT: Final = 1e-6
 _SHORTEST_REACH: Final = 1e-7
 _SMALLEST_RADIUS: Final = 1e-6
@@ -29,7 +29,8 @@ _SHARE: Final = 0.9
 _INNER_RADIUS: Final = 0.8
 _SHRINK: Final = 0.6
 _ROUNDS: Final = 24
-_NEWTON_STEPS: Final = 6
+_NEWTON_STEPS: Final = 10
+_FARTHEST: Final = 20.0
 _CONVERGED: Final = 1e-11
 _ROUNDING: Final = 1.0 + 1e-9
 
@@ -104,7 +105,7 @@ def _blend(curve: Curve, angle: Array, wanted: BoolArray, deviation: float) -> _
     found = np.zeros_like(wanted)
     before, after, turn = np.zeros_like(reach), np.zeros_like(reach), np.zeros_like(reach)
     for _ in range(_ROUNDS):
-        s_in, s_out, t, off, ok = _solve(legs, angle, side * radius, reach)
+        s_in, s_out, t, off, ok = _solve(legs, angle, side * radius, radius * tangent)
         fits = (radius >= _SMALLEST_RADIUS) & (off <= deviation * _ROUNDING)
         good = open_ & ok & fits & (s_in <= limit_in) & (s_out <= limit_out)
         before, after, turn = np.where(good, s_in, before), np.where(good, s_out, after), np.where(good, t, turn)
@@ -112,7 +113,7 @@ def _blend(curve: Curve, angle: Array, wanted: BoolArray, deviation: float) -> _
         open_ &= ~good
         if not open_.any():
             break
-        radius, reach = radius * _SHRINK, reach * _SHRINK
+        radius = radius * _SHRINK
     return _Blend(found, before, after, turn)
 
 
@@ -157,10 +158,13 @@ def _limits(reach: Array, length: Array) -> tuple[Array, Array]:
     return reach * room[:-1] * 0.98, reach * room[1:] * 0.98
 
 
-def _solve(legs: _Legs, angle: Array, radius: Array, reach: Array) -> tuple[Array, Array, Array, Array, BoolArray]:
-    """The arcs of the given signed radius: s1, s2, the turn, the distance from the corner, and whether it is an arc."""
-    s_in, s_out = reach.copy(), reach.copy()
-    miss = np.full_like(reach, np.inf)
+def _solve(legs: _Legs, angle: Array, radius: Array, guess: Array) -> tuple[Array, Array, Array, Array, BoolArray]:
+    """The arcs of the given signed radius: s1, s2, the turn, the distance from the corner, and whether it is an arc.
+
+    ``guess`` is what s1 and s2 would be between straight legs, (N - 1,) m.
+    """
+    s_in, s_out = guess.copy(), guess.copy()
+    miss = np.full_like(guess, np.inf)
     for step in range(_NEWTON_STEPS + 1):
         p_in, h_in = curves.advance(legs.corner, legs.heading_in, legs.curvature_in, -s_in)
         p_out, h_out = curves.advance(legs.corner, legs.heading_out, legs.curvature_out, s_out)
@@ -176,7 +180,7 @@ def _solve(legs: _Legs, angle: Array, radius: Array, reach: Array) -> tuple[Arra
         safe = np.where(det == 0.0, 1.0, det)
         s_in = s_in + np.where(det == 0.0, 0.0, (-gap[:, 0] * by + gap[:, 1] * bx) / safe)
         s_out = s_out + np.where(det == 0.0, 0.0, (-gap[:, 1] * ax + gap[:, 0] * ay) / safe)
-        s_in, s_out = np.clip(s_in, 0.0, 4.0 * reach), np.clip(s_out, 0.0, 4.0 * reach)
+        s_in, s_out = np.clip(s_in, 0.0, _FARTHEST * guess), np.clip(s_out, 0.0, _FARTHEST * guess)
     turn = angle + legs.curvature_in * s_in + legs.curvature_out * s_out
     centre = p_in + radius[:, None] * _left(h_in)
     off = np.abs(np.hypot(*(centre - legs.corner).T) - np.abs(radius))

@@ -24,7 +24,7 @@ def simple(curve: Curve) -> bool:
     return bool(line(curve).is_simple) and curves.signed_area(curve) > 1e-7
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(star_curves(), st.floats(5e-5, 1.5e-3), st.booleans())
 def test_the_cut_runs_half_a_kerf_beside_the_drawn_line_on_the_waste_side(
     curve: Curve, kerf: float, hole: bool
@@ -45,7 +45,7 @@ def test_the_cut_runs_half_a_kerf_beside_the_drawn_line_on_the_waste_side(
         assert inside.all() if hole else not inside.any()
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(star_curves(), st.floats(5e-5, 1.5e-3))
 def test_the_cut_goes_all_the_way_around(curve: Curve, kerf: float) -> None:
     assume(simple(curve))
@@ -55,7 +55,7 @@ def test_the_cut_goes_all_the_way_around(curve: Curve, kerf: float) -> None:
     assert total == pytest.approx(region.length, rel=2e-4)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(star_curves(), st.floats(5e-5, 5e-4), st.booleans())
 def test_every_path_is_traced_back_to_the_lines_and_arcs_of_the_drawing(curve: Curve, kerf: float, hole: bool) -> None:
     assume(simple(curve))

@@ -26,7 +26,7 @@ def worst_kink(curve: Curve) -> float:
     return float(np.abs(curves.corner_angles(curve)).max(initial=0.0))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(star_curves(low=1e-3, high=40e-3), st.floats(1e-6, 1e-4))
 def test_rounded_corners_leave_a_tangent_path_within_the_deviation(curve: Curve, deviation: float) -> None:
     assume(curves.lengths(curve).min() > 1e-5)
@@ -92,3 +92,19 @@ def test_slivers_are_left_out() -> None:
     (part,) = pieces(curves.polygon(points), corner="round", deviation=DEVIATION)
     assert curves.lengths(part).min() > 1e-5
     assert len(part.points) == 8
+
+
+@pytest.mark.parametrize("kink", [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1.74e-3, 1e-2])
+@pytest.mark.parametrize("radius", [0.075e-3, 0.0088, 0.2])
+@pytest.mark.parametrize("turn", [-1.5, 1.5])
+def test_a_line_that_almost_touches_an_arc_is_no_stop(kink: float, radius: float, turn: float) -> None:
+    bend = curves.advance(np.zeros((1, 2)), np.zeros(1), np.array([np.sign(turn) / radius]), np.array([1.5 * radius]))
+    for side in (-1.0, 1.0):
+        heading = float(bend[1][0]) + side * kink
+        end = bend[0][0] + 0.13 * np.array([np.cos(heading), np.sin(heading)])
+        points = np.array([[-0.1, 0.0], [0.0, 0.0], bend[0][0], end])
+        curve = Curve(points=points, bulges=np.array([0.0, np.tan(turn / 4.0), 0.0, 0.0]))
+        parts = pieces(curve, corner="stop", deviation=DEVIATION)
+        assert parts[0].points[-1] == pytest.approx(end)  # the first stop is the sharp corner after the second line
+        assert worst_kink(parts[0]) < 1e-5
+        assert np.abs(curves.curvatures(parts[0])).max() < 1.3 / radius
