@@ -55,7 +55,7 @@ def nest(
     for contour, ring in zip(contours, rings, strict=True):
         if not ring.is_simple:
             _refuse_self_crossing(contour, ring)
-    polygons = shapely.polygons(rings)
+    polygons = np.array([_polygon(ring) for ring in rings])
     findings = _check_pairs(contours, rings, polygons)
     areas = shapely.area(polygons)
     tree, inside = shapely.STRtree(polygons), shapely.point_on_surface(polygons)
@@ -78,6 +78,16 @@ def nest(
         for i, contour in enumerate(contours)
     )
     return nested, findings
+
+
+def _polygon(ring: Any) -> Any:
+    """The polygon in a ring; where the ring meets itself within rounding, its largest part."""
+    import shapely
+
+    polygon = shapely.Polygon(ring)
+    if not polygon.is_valid:
+        polygon = max(shapely.get_parts(shapely.make_valid(polygon)), key=shapely.area)
+    return polygon
 
 
 def _in_outlines(inside: Any, tree: Any, outlines: Sequence[Curve]) -> IntArray:

@@ -7,6 +7,7 @@ invisible are not read: dynamic blocks keep the variants that are not chosen tha
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Final
@@ -31,6 +32,9 @@ MAX_REACH: Final = 1e6
 
 FLATNESS: Final = 1e-5
 """How far z may differ, m, within a flat drawing."""
+
+
+_KIND: Final = re.compile(r"[A-Z0-9_]*[A-Z][A-Z0-9_]*")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,7 +94,7 @@ class _Walk:
         for raw in container:
             entity = _named(raw, place)
             self._count(entity)
-            if raw.dxf.get("invisible", 0):
+            if kinds.is_hidden(raw):
                 yield replace(entity, reason="marked as invisible", hidden=True)
             elif entity.kind == "INSERT":
                 yield from self._insert(raw, entity, place)
@@ -142,7 +146,8 @@ class _Walk:
         if name in place.blocks or len(place.blocks) >= MAX_NESTING:
             inside = "/".join((*place.blocks, name))
             raise DrawingError(f"blocks are nested without end: {inside[:200]}", where=entity.where)
-        block = raw.block()
+        with translated(entity.where):
+            block = raw.block()
         if block is None:
             what = f"the block {name} that is inserted here is not in the file"
             raise DrawingError(what, where=entity.where, hint="bind external references, then export again")
@@ -184,10 +189,15 @@ def read(document: Any, metres_per_unit: float) -> list[Entity]:
 
 def _named(raw: Any, place: _Place) -> Entity:
     """An entity with its names only."""
-    layer = _text(raw.dxf.get("layer", "0"))
+    kind = _text(raw.dxftype())
+    if not _KIND.fullmatch(kind):
+        what = f"where a kind of entity is expected the file says {kind[:40]!r}"
+        raise DrawingError(what, where=f"entity #{raw.dxf.handle}", hint="the file is damaged: export it again")
+    with translated(f"{kind} #{raw.dxf.handle}"):
+        layer = _text(kinds.layer(raw))
     return Entity(
         handle=_text(raw.dxf.handle or "?"),
-        kind=raw.dxftype(),
+        kind=kind,
         layer=place.layer if layer == "0" else layer,
         block="/".join(place.blocks),
     )

@@ -88,21 +88,15 @@ def point_mm(point: Array) -> str:
 
 
 def _drawn(entities: Sequence[Entity], joined: Joined) -> list[tuple[int, Curve]]:
-    """The curves to join with the index of their entity; those that end where they start are closed."""
+    """The curves to join, with the index of their entity."""
     drawn = []
     for i, entity in enumerate(entities):
         if entity.curve is None:
             continue
-        curve = entity.curve
-        reach = curves.length(curve)
-        if reach <= nodes.COINCIDENT:
+        if curves.length(entity.curve) <= nodes.COINCIDENT:
             joined.notes[i] = (Outcome.IGNORED, f"a {entity.kind} of length zero")
             continue
-        if not curve.closed:
-            gap = float(np.hypot(*(curve.points[-1] - curve.points[0])))
-            if gap <= min(nodes.JOINING, 0.1 * reach) and len(curve.bulges) > 1:
-                curve, _ = tidy.link([curve], closed=True)
-        drawn.append((i, curve))
+        drawn.append((i, entity.curve))
     return drawn
 
 
@@ -111,7 +105,7 @@ def _loops(strands: list[tuple[int, Curve]], entities: Sequence[Entity], joined:
     if not strands:
         return []
     ends = np.array([(curve.points[0], curve.points[-1]) for _, curve in strands])
-    found = nodes.find(ends)
+    found = nodes.find(ends, np.array([curves.length(curve) for _, curve in strands]))
     traced = chains.trace(found)
     for i in np.flatnonzero(found.specks).tolist():
         joined.notes[strands[i][0]] = (Outcome.MERGED, "shorter than the joining tolerance of 0.01 mm")
@@ -146,8 +140,6 @@ def _is_nearly_closed(curve: Curve) -> bool:
 
 def _loop(chain: list[chains.Step], strands: list[tuple[int, Curve]], entities: Sequence[Entity]) -> Loop:
     """The loop of a closed chain, counter-clockwise from its first entity."""
-    first = min(range(len(chain)), key=lambda k: chain[k][0])
-    chain = chain[first:] + chain[:first]
     pieces = [curves.reverse(strands[i][1]) if turned else strands[i][1] for i, turned in chain]
     curve, moved = tidy.link(pieces, closed=True)
     if curves.signed_area(curve) < 0.0:

@@ -30,6 +30,18 @@ _FRAME: Final = 16
 """Bit of a VERTEX that belongs to the frame of a fitted polyline and is not on the line."""
 
 
+def layer(entity: Any) -> str:
+    """The layer of an entity of any kind, also of one that ezdxf only stores."""
+    if entity.dxf.is_supported("layer"):
+        return str(entity.dxf.get("layer", "0"))
+    return str(entity.graphic_properties().get("layer", "0"))
+
+
+def is_hidden(entity: Any) -> bool:
+    """Whether an entity is marked as invisible."""
+    return entity.dxf.is_supported("invisible") and bool(entity.dxf.get("invisible", 0))
+
+
 def is_drawn(kind: str) -> bool:
     """Whether entities of this kind draw a line."""
     return kind in _READERS

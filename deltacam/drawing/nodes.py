@@ -41,34 +41,57 @@ class Nodes:
     specks: BoolArray
 
 
-def find(ends: Array) -> Nodes:
-    """The nodes of the ends, (M, 2, 2) m.
+def find(ends: Array, reach: Array) -> Nodes:
+    """The nodes where open curves meet.
+
+    Args:
+        ends: (M, 2, 2) m, the start and the end of each curve.
+        reach: (M,) m, how long each is.
 
     Raises:
         DrawingError: thousands of ends in one place.
     """
     flat = ends.reshape(-1, 2)
     labels = _clusters(flat, COINCIDENT)
+    _check_extent(flat, labels)
     alone = np.flatnonzero(np.bincount(labels)[labels] == 1)
-    specks = np.zeros(len(ends), dtype=np.bool_)
+    specks, tiny = np.zeros(len(ends), dtype=np.bool_), reach <= JOINING
     groups = _clusters(flat[alone], JOINING)
     order = np.argsort(groups, kind="stable")
     counts = np.bincount(groups)
     for group in np.split(alone[order], np.cumsum(counts)[:-1]):
         if len(group) > 1:
-            _bridge(group, flat, labels, specks)
+            _bridge(group, flat, labels, specks, tiny)
     _, first, tidy = np.unique(labels, return_index=True, return_inverse=True)
     return Nodes(tidy.reshape(-1, 2).astype(np.int64), flat[first], specks)
 
 
-def _bridge(group: IntArray, flat: Array, labels: IntArray, specks: BoolArray) -> None:
-    """Gives the ends of one group a common node; curves with both ends in a larger group are specks."""
+def _check_extent(points: Array, labels: IntArray) -> None:
+    """Raises where a row of ends, each near the next, runs further than ends are joined."""
+    count = int(labels.max()) + 1
+    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
+    np.minimum.at(low, labels, points)
+    np.maximum.at(high, labels, points)
+    wide = np.flatnonzero(np.hypot(*(high - low).T) > JOINING)
+    if len(wide):
+        raise _crowd(low[wide[0]])
+
+
+def _crowd(place: Array) -> DrawingError:
+    """The error for more ends in one place than a drawing has."""
+    x, y = to_mm(float(place[0])), to_mm(float(place[1]))
+    return DrawingError(f"thousands of line ends crowd in one place, near ({x:.3f}, {y:.3f}) mm")
+
+
+def _bridge(group: IntArray, flat: Array, labels: IntArray, specks: BoolArray, tiny: BoolArray) -> None:
+    """Gives the ends of one group a common node; tiny curves with both ends in a larger group are specks."""
     if len(group) > 2:
         curves_of, times = np.unique(group // 2, return_counts=True)
-        inner = curves_of[times == 2]
+        inner = curves_of[(times == 2) & tiny[curves_of]]
         specks[inner] = True
         group = group[~np.isin(group // 2, inner)]
-    if len(group) != 2 or np.hypot(*(flat[group[0]] - flat[group[1]])) <= JOINING:
+    # Neighbours of neighbours may lie far apart; such a row of ends is no place where they meet.
+    if len(group) and np.hypot(*np.ptp(flat[group], axis=0)) <= JOINING:
         labels[group] = labels[group[:1]]
 
 
@@ -83,8 +106,7 @@ def _clusters(points: Array, distance: float) -> IntArray:
     unique, inverse = np.unique(points, axis=0, return_inverse=True)
     index = cKDTree(unique)
     if index.count_neighbors(index, distance) > MAX_PAIRS + 100 * len(unique):
-        x, y = to_mm(float(unique[0, 0])), to_mm(float(unique[0, 1]))
-        raise DrawingError(f"thousands of line ends crowd in one place, near ({x:.3f}, {y:.3f}) mm")
+        raise _crowd(unique[0])
     pairs = index.query_pairs(distance, output_type="ndarray")
     shape = (len(unique), len(unique))
     links = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=shape)

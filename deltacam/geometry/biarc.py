@@ -49,7 +49,7 @@ def fit(evaluate: Evaluate, parameters: Array, tolerance: float) -> tuple[Curve,
         tolerance: largest distance of the samples, m, > 0. The returned distance is measured on more samples.
 
     Raises:
-        ValueError: a place that is not finite, or more than ``MAX_PIECES`` pieces.
+        ValueError: a place that is not finite, more than ``MAX_PIECES`` pieces, or a curve too wild for the samples.
     """
     low, high = np.asarray(parameters[:-1], dtype=float), np.asarray(parameters[1:], dtype=float)
     done: list[tuple[Array, Array, _Biarcs]] = []
@@ -72,6 +72,8 @@ def fit(evaluate: Evaluate, parameters: Array, tolerance: float) -> tuple[Curve,
     bulges = np.concatenate([piece[2].bulges for piece in done])[order]
     samples, _ = _sample(evaluate, low, high, _CHECK_SAMPLES)
     error = float(_distances(_Biarcs(points, bulges), samples).max())
+    if error > 2.0 * tolerance:
+        raise ValueError("it winds too fast between two samples to be followed")
     places = np.concatenate([points[:, :2].reshape(-1, 2), points[-1:, 2]])
     curve, moved = merge(Curve(points=places, bulges=bulges.ravel(), closed=False))
     return curve, error + moved
@@ -124,7 +126,6 @@ def _try(evaluate: Evaluate, low: Array, high: Array, tolerance: float) -> tuple
 def _sample(evaluate: Evaluate, low: Array, high: Array, count: int) -> tuple[Array, Array]:
     """Points (N, count, 2) and unit directions (N, count, 2) evenly over each interval, both ends included."""
     t = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, count)
-    t[:, -1] = high
     points, directions = evaluate(t.ravel())
     size = np.hypot(*directions.T)
     if not (np.isfinite(points).all() and np.isfinite(size).all()):

@@ -37,6 +37,12 @@ def test_rings_in_rings_alternate() -> None:
     assert nested(*(disc(0, 0, radius) for radius in order)) == [(1, 3), (3, 4), (0, None), (2, 1)]
 
 
+def test_the_parent_is_the_nearest_around() -> None:
+    order = [5.0, 1.0, 9.0, 3.0, 7.0, 2.0, 8.0, 4.0, 6.0]
+    expected = {radius: order.index(radius + 1.0) + 1 if radius < 9.0 else None for radius in order}
+    assert nested(*(disc(0.3 * radius, 0, radius) for radius in order)) == [(9 - r, expected[r]) for r in order]
+
+
 def test_neighbours_are_not_nested() -> None:
     assert nested(disc(0, 0, 5), disc(20, 0, 5), disc(20, 0, 2)) == [(0, None), (0, None), (1, 2)]
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deltacam.drawing import tidy
+from deltacam.drawing import duplicates, tidy
 from deltacam.drawing.entities import Entity
 from deltacam.drawing.join import Joined, join
 from deltacam.errors import DrawingError
@@ -71,6 +71,9 @@ def test_a_shape_taken_apart_comes_back_with_its_area_and_length(
     assert curves.signed_area(loop.curve) == pytest.approx(abs(curves.signed_area(shape)), abs=0.4 * tolerance + 1e-15)
     assert curves.length(loop.curve) == pytest.approx(curves.length(shape), abs=40 * tolerance + 1e-15)
     assert loop.error <= 4.0 * noise
+    middles, _ = curves.evaluate(loop.curve, np.arange(len(parts)), 0.5 * curves.lengths(loop.curve))
+    for member, middle in zip(loop.members, middles, strict=True):
+        assert curves.nearest(shaken[member], middle)[2] <= tolerance + 1e-12
     for point in shape.points:
         assert curves.nearest(loop.curve, point)[2] <= tolerance + 1e-12
 
@@ -99,6 +102,14 @@ def test_closed_contours_split_differently_are_duplicates() -> None:
     turned = curves.transform(disc, rotation=1.0)
     assert len(joined(disc, turned).loops) == 1
     assert len(joined(disc, curves.circle(np.zeros(2), 5.05 * MM)).loops) == 2
+
+
+def test_a_line_that_only_covers_part_of_another_is_no_duplicate() -> None:
+    whole = segment((0, 10), (0, 0), (10, 0), (10, 10))
+    back = segment((0, 10), (0, 0), (10, 0), (0, 0))
+    assert not duplicates.same(back, whole, 1e-5)
+    assert not duplicates.same(whole, back, 1e-5)
+    assert duplicates.same(whole, curves.reverse(whole), 1e-5)
 
 
 def test_arcs_of_other_bulge_between_the_same_ends_are_no_duplicates() -> None:
@@ -157,6 +168,14 @@ def test_a_speck_between_two_ends_is_merged() -> None:
     assert result.notes == {1: (Outcome.MERGED, "shorter than the joining tolerance of 0.01 mm")}
 
 
+def test_a_speck_does_not_bridge_more_than_the_tolerance() -> None:
+    corners = segment((0.02, 0), (10, 0), (10, 10), (0, 0.004))
+    result = joined(corners, segment((0.007, 0.001), (0.013, 0.001)))
+    assert result.loops == []
+    assert result.open_chains == 1
+    assert result.notes[1] == (Outcome.MERGED, "shorter than the joining tolerance of 0.01 mm")
+
+
 def test_a_polyline_that_ends_where_it_starts_is_closed() -> None:
     (loop,) = joined(segment((0, 0), (10, 0), (10, 10), (0, 0))).loops
     assert len(loop.curve.points) == 3
@@ -173,6 +192,18 @@ def test_a_line_drawn_back_and_forth_is_no_contour() -> None:
 def test_a_figure_of_eight_is_no_sliver() -> None:
     eight = curves.polygon(MM * np.array([[0.0, 0.0], [10.0, 10.0], [10.0, 0.0], [0.0, 10.0]]))
     assert len(joined(eight).loops) == 1
+
+
+def test_an_arc_beside_a_speck_of_a_segment_stays_exact() -> None:
+    points = MM * np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 0.0005], [10.0, 10.0], [0.0, 10.0]])
+    arcs = Curve(points, np.array([0.0, 0.0, 0.4, 0.0, 0.0]))
+    clean, moved = tidy.cleaned(arcs)
+    assert clean is not None
+    assert moved == pytest.approx(0.5e-6)
+    exact = Curve(points[2:4], np.array([0.4]), closed=False)
+    segment_of_arc = int(np.flatnonzero(clean.bulges)[0])
+    assert clean.starts[segment_of_arc] == pytest.approx(exact.points[0], abs=1e-15)
+    assert curves.curvatures(clean)[segment_of_arc] == pytest.approx(curves.curvatures(exact)[0], rel=1e-12)
 
 
 def test_a_dead_end_does_not_keep_an_outline_open() -> None:
@@ -221,6 +252,19 @@ def test_many_ends_in_one_place_are_refused_and_not_a_hang() -> None:
     rays = [segment((1e-8 * i, 0), (10 + i, 50)) for i in range(2500)]
     with pytest.raises(DrawingError, match="crowd in one place"):
         joined(*rays)
+
+
+@pytest.mark.parametrize("step", [5e-5, 8e-3])
+def test_a_row_of_ends_never_closes_a_gap_wider_than_the_tolerance(step: float) -> None:
+    outline = segment((0, 0), (10, 0), (10, 10), (-0.03, 0))
+    rays = [segment((-step * i, 0), (-10, -20 - i)) for i in range(1, math.ceil(0.03 / step))]
+    try:
+        result = joined(outline, *rays)
+    except DrawingError as error:
+        assert "crowd" in error.what  # noqa: PT017
+        return
+    assert result.loops == []
+    assert result.notes[0] == (Outcome.IGNORED, "an open line, gap of 0.03 mm at (0.000, 0.000) mm")
 
 
 def test_ten_thousand_lines_are_joined_in_linear_time() -> None:

@@ -1,8 +1,9 @@
 """Files, units, the ledger and the refusals."""
 
 import hashlib
-import logging
 import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -219,13 +220,26 @@ def test_the_hash_is_that_of_the_bytes() -> None:
     assert drawing.file == "wrench-inch.dxf"
 
 
-def test_nothing_is_printed_while_reading(capfd: pytest.CaptureFixture[str]) -> None:
-    logging.getLogger("ezdxf").warning("a warning of ezdxf")
-    read_drawing(FILES / "cut-test-needs-recover.dxf", unit="mm")
-    assert capfd.readouterr() == ("", "")
+def test_what_ezdxf_logs_is_not_printed() -> None:
+    script = "import deltacam.drawing.reader, logging; logging.getLogger('ezdxf').warning('noise')"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True, timeout=60)
+    assert (done.stdout, done.stderr) == (b"", b"")
 
 
-def test_binary_dxf_and_old_versions_read_the_same(tmp_path: Path, reread: Any) -> None:
+def test_a_duplicate_is_listed_with_the_contour_that_it_repeats(reread: Any) -> None:
+    drawing = reread(lambda msp: [msp.add_circle((x, 0), 5) for x in (0, 20, 20)])
+    assert [(entry.outcome, entry.contour) for entry in drawing.ledger] == [
+        (Outcome.CUT, 1),
+        (Outcome.CUT, 2),
+        (Outcome.MERGED, 2),
+    ]
+    assert drawing.ledger[2].reason == f"duplicate of #{drawing.ledger[1].handle}"
+
+
+def test_binary_dxf_other_line_ends_and_a_mark_need_no_recovery(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(document.recover, "read", lambda _: pytest.fail("it was recovered"))
     source = ezdxf.new("R12")
     source.header["$INSUNITS"] = 4
     source.modelspace().add_circle((5, 5), 5)
