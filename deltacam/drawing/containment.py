@@ -64,11 +64,8 @@ def nest(
     around = areas[outer] > areas[inner]
     inner, outer = inner[around], outer[around]
     opened = _in_outlines(inside, tree, outlines)
+    findings += _open_findings(contours, opened)
     depth = np.bincount(inner, minlength=len(contours)) + opened
-    if opened.any():
-        many = "1 contour lies" if opened.sum() == 1 else f"{np.count_nonzero(opened)} contours lie"
-        where = contours[int(np.argmax(opened > 0))].where
-        findings.append(Finding(f"{many} in an outline that is open: cut as its holes", where=where))
     parent: dict[int, int] = {}
     for i, j in zip(inner.tolist(), outer.tolist(), strict=True):
         if i not in parent or areas[j] < areas[parent[i]]:
@@ -98,6 +95,16 @@ def _in_outlines(inside: Any, tree: Any, outlines: Sequence[Curve]) -> IntArray:
     faces = [shapely.make_valid(shapely.Polygon(points)) for points in places]
     index, _ = shapely.STRtree(faces).query(inside, predicate="within")
     return np.bincount(index, minlength=len(inside)).astype(np.int64)
+
+
+def _open_findings(contours: Sequence[Contour], opened: IntArray) -> list[Finding]:
+    """The finding that some contours lie in open outlines, where ``opened``, (N,), is not 0."""
+    count = np.count_nonzero(opened)
+    if not count:
+        return []
+    many = "1 contour lies" if count == 1 else f"{count} contours lie"
+    where = contours[int(np.argmax(opened > 0))].where
+    return [Finding(f"{many} in an outline that is open: cut as its holes", where=where)]
 
 
 def _refuse_tangles(contours: Sequence[Contour], inside: Any, tree: Any, tangles: Sequence[Curve]) -> None:

@@ -34,9 +34,7 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
     path = Path(path)
     data = document.read_bytes(path)
     source = document.load(data, path.name)
-    # ezdxf fills in a default header where the file has none; only the file's own unit counts.
-    header = source.header.get("$INSUNITS") if b"$INSUNITS" in data else None
-    chosen = scale.choose(header, unit=unit, metres_per_unit=metres_per_unit)
+    chosen = scale.choose(_header_unit(source, data), unit=unit, metres_per_unit=metres_per_unit)
     drawn = entities.read(source, chosen.metres if chosen else 1e-3)
     if chosen is None:
         raise _without_unit(drawn, source, path.name)
@@ -45,6 +43,8 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
         raise _nothing_to_cut(drawn, joined, source, path.name)
     flat = [_contour(i + 1, loop, drawn) for i, loop in enumerate(joined.loops)]
     contours, nesting = containment.nest(flat, outlines=joined.outlines, tangles=joined.tangles)
+    findings = [*chosen.findings, *_layer_findings(drawn, source), *_ignored_findings(drawn, source)]
+    findings += [*joined.findings, *nesting]
     return Drawing(
         file=path.name,
         sha256=hashlib.sha256(data).hexdigest(),
@@ -52,15 +52,14 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
         unit=chosen.name,
         contours=contours,
         ledger=_ledger(drawn, joined),
-        findings=(
-            *chosen.findings,
-            *_layer_findings(drawn, source),
-            *_ignored_findings(drawn, source),
-            *joined.findings,
-            *nesting,
-        ),
+        findings=tuple(findings),
         conversion_error=max(loop.error for loop in joined.loops),
     )
+
+
+def _header_unit(source: Any, data: bytes) -> int | None:
+    """$INSUNITS where the file itself gives it; ezdxf fills in a default where the file has no header."""
+    return source.header.get("$INSUNITS") if b"$INSUNITS" in data else None
 
 
 def _contour(number: int, loop: join.Loop, drawn: Sequence[Entity]) -> Contour:

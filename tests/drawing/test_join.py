@@ -168,6 +168,13 @@ def test_a_speck_between_two_ends_is_merged() -> None:
     assert result.notes == {1: (Outcome.MERGED, "shorter than the joining tolerance of 0.01 mm")}
 
 
+def test_a_speck_that_sticks_out_does_not_keep_an_outline_open() -> None:
+    corners = segment((0.009, 0), (10, 0), (10, 10), (0, 0))
+    result = joined(corners, segment((0.0045, 0.001), (0.0045, 0.0105)))
+    assert len(result.loops) == 1
+    assert set(result.notes) == {1}
+
+
 def test_a_speck_does_not_bridge_more_than_the_tolerance() -> None:
     corners = segment((0.02, 0), (10, 0), (10, 10), (0, 0.004))
     result = joined(corners, segment((0.007, 0.001), (0.013, 0.001)))
@@ -195,7 +202,7 @@ def test_a_figure_of_eight_is_no_sliver() -> None:
 
 
 def test_an_arc_beside_a_speck_of_a_segment_stays_exact() -> None:
-    points = MM * np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 0.0005], [10.0, 10.0], [0.0, 10.0]])
+    points = MM * np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 0.0005], [30.0, 10.0], [0.0, 10.0]])
     arcs = Curve(points, np.array([0.0, 0.0, 0.4, 0.0, 0.0]))
     clean, moved = tidy.cleaned(arcs)
     assert clean is not None

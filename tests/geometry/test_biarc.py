@@ -103,18 +103,20 @@ def test_a_circular_stretch_within_a_curve_is_one_arc() -> None:
     assert curve.bulges == pytest.approx([0.0, math.tan(math.pi / 8.0)], abs=1e-6)
 
 
-@pytest.mark.parametrize("turn", [math.pi, 2.0 * math.pi])
-def test_a_curve_that_is_run_in_a_rush_is_followed_or_refused(turn: float) -> None:
-    def evaluate(t: Array) -> tuple[Array, Array]:
-        rush = 0.5 * (1.0 + np.tanh(150.0 * (t - 0.512)))
-        return ellipse(0.02, 0.01)(turn * rush)
+def rush(turn: float, speed: float) -> biarc.Evaluate:
+    """A stretch of an ellipse that is run almost at once, near parameter 0.512 of 0 to 1."""
+    return lambda t: ellipse(0.02, 0.01)(0.5 * turn * (1.0 + np.tanh(speed * (t - 0.512))))
 
-    try:
-        curve, _ = biarc.fit(evaluate, np.array([0.0, 1.0]), TOLERANCE)
-    except ValueError:
-        return
-    points, _ = ellipse(0.02, 0.01)(np.linspace(0.0, turn, 101))
+
+def test_a_curve_that_is_run_in_a_rush_is_followed() -> None:
+    curve, _ = biarc.fit(rush(math.pi, 150.0), np.array([0.0, 1.0]), TOLERANCE)
+    points, _ = ellipse(0.02, 0.01)(np.linspace(1e-4, math.pi - 1e-4, 101))
     assert farthest(curve, points) <= 1e-6
+
+
+def test_a_loop_that_hides_between_two_samples_is_refused() -> None:
+    with pytest.raises(ValueError, match="too fast"):
+        biarc.fit(rush(2.0 * math.pi, 300.0), np.array([0.0, 1.0]), TOLERANCE)
 
 
 def test_a_curve_that_never_becomes_smooth_is_refused() -> None:
