@@ -262,6 +262,8 @@ def _content(program: Program) -> bytes:
 
 def _make_folder(folder: Path) -> None:
     """Make the folder where it is missing, and find out now whether it can be written to."""
+    if folder.exists() and not folder.is_dir():
+        raise ProgramError("this is a file, not a folder", where=str(folder), hint="name a folder with -o")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         probe = folder / f".deltacam-{os.getpid()}.tmp"

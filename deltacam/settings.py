@@ -147,7 +147,9 @@ class Table:
 
     def _suggestion(self, key: str) -> str:
         """The key that was probably meant to be the missing ``key``; far stricter than for unknown keys."""
-        near = _nearest(key, [other for other in self._values if other not in self._known], cutoff=0.85)
+        others = [other for other in self._values if other not in self._known]
+        without_unit = [other for other in others if key.startswith(f"{other}_")]
+        near = without_unit[0] if without_unit else _nearest(key, others, cutoff=0.85)
         return f"the file has {near!r}; did you mean {key!r}?" if near else ""
 
     def _bounded(self, key: str, value: object, minimum: float, maximum: float) -> float:

@@ -155,7 +155,7 @@ def test_a_failed_check_leaves_the_reports_and_no_program(tmp_path: Path, monkey
 
 def test_a_folder_that_cannot_be_written_is_refused_first(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(ProgramError, match="cannot be written"):
+    with pytest.raises(ProgramError, match="not a folder"):
         plan_to_folder(DXF / "no-such.dxf", tmp_path / "file")
 
 

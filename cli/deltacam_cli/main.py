@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import importlib
 import json
 import sys
@@ -22,6 +23,7 @@ EXIT_FAILED: Final = 1
 EXIT_INPUT: Final = 2
 EXIT_FAULT: Final = 3
 EXIT_INTERRUPTED: Final = 130
+EXIT_PIPE_CLOSED: Final = 141
 
 LONGEST_MESSAGE: Final = 4000
 """Characters of a message that are shown; a hostile file may hold a name of any length."""
@@ -52,6 +54,9 @@ class LateGroup(click.Group):
         """The command that the first argument names; a drawing in its place is answered with what to type."""
         if args and args[0].lower().endswith(".dxf"):
             ctx.fail(f"no command given; did you mean `deltacam plan {args[0]}`?")
+        if args and args[0] not in COMMANDS:
+            near = difflib.get_close_matches(args[0], COMMANDS, n=1)
+            ctx.fail(f"no such command {args[0]!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
         return super().resolve_command(ctx, args)
 
 
@@ -75,10 +80,10 @@ def main() -> NoReturn:
     arguments = sys.argv[1:]
     as_json = "--json" in arguments
     try:
-        code = cli.main(args=arguments, prog_name="deltacam", standalone_mode=False)
-    except click.exceptions.Abort:
-        code = _interrupted()
-    except KeyboardInterrupt:
+        # Not cli.main, which turns a closed pipe into exit code 1: here that means a failed check.
+        with cli.make_context("deltacam", list(arguments)) as context:
+            code = cli.invoke(context)
+    except (click.exceptions.Abort, KeyboardInterrupt):
         code = _interrupted()
     except click.exceptions.Exit as problem:
         code = problem.exit_code
@@ -89,7 +94,7 @@ def main() -> NoReturn:
     except BrokenPipeError:
         # Who read the result has gone; without this Python complains once more while it shuts down.
         sys.stdout = None
-        code = EXIT_FAULT
+        code = EXIT_PIPE_CLOSED
     except Exception as problem:  # noqa: BLE001 - the last resort, so that no bare traceback reaches the user
         code = _fault(problem, "--traceback" in arguments, as_json)
     sys.exit(code if isinstance(code, int) else 0)
@@ -101,10 +106,13 @@ def _interrupted() -> int:
 
 
 def _refused_by_click(problem: click.ClickException, as_json: bool) -> int:
-    if as_json:
-        return _refused(problem.format_message(), "command line", "see --help", as_json)
-    problem.show()
-    return EXIT_INPUT
+    if isinstance(problem, click.exceptions.NoArgsIsHelpError):
+        problem.show()
+        return EXIT_INPUT
+    context = problem.ctx if isinstance(problem, click.UsageError) else None
+    command = context.command_path if context else "deltacam"
+    what = problem.format_message().rstrip(".")
+    return _refused(what[:1].lower() + what[1:], "", f"see `{command} --help`", as_json)
 
 
 def _refused(what: str, where: str, hint: str, as_json: bool) -> int:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from deltacam.errors import DeltacamError
-from deltacam.units import parse_angle, parse_length, parse_speed
+from deltacam.units import metres_per, parse_angle, parse_length, parse_speed
 
 T = TypeVar("T")
 
@@ -40,6 +40,16 @@ def angle(option: str, text: str) -> float:
         DeltacamError: it is not an angle; names the option.
     """
     return _read(option, text, parse_angle) or 0.0
+
+
+def unit(option: str, text: str | None) -> str | None:
+    """The name of a unit of length.
+
+    Raises:
+        DeltacamError: there is no such unit; names the option.
+    """
+    _read(option, text, metres_per)
+    return text
 
 
 def place(option: str, text: str) -> tuple[float, float]:

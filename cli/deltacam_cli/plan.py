@@ -65,7 +65,7 @@ def command(
             folder,
             robot=robot,
             process=_process(process, **single_values),
-            unit=units,
+            unit=options.unit("--units", units),
             at=options.place("--at", at),
             rotation=options.angle("--rotate", rotate),
             mode=Mode.FRAME if frame else Mode.DRY_RUN if dry_run else Mode.CUT,

@@ -58,17 +58,24 @@ def check_process(process: Process) -> Process:
         ProcessError: a value is out of range; where names it.
     """
     ranges = (
-        ("kerf", process.kerf, 0.0, MAX_KERF, to_mm, "mm"),
-        ("feed", process.feed, MIN_FEED, MAX_FEED, to_mm, "mm/s"),
-        ("tolerance", process.tolerance, *TOLERANCES, to_um, "um"),
-        ("chord tolerance", process.chord_tolerance, *TOLERANCES, to_um, "um"),
+        ("kerf", process.kerf, 0.0, MAX_KERF, to_mm, "mm", "--kerf, or kerf_mm in the process file"),
+        ("feed", process.feed, MIN_FEED, MAX_FEED, to_mm, "mm/s", "--feed, or feed_m_min in the process file"),
+        ("tolerance", process.tolerance, *TOLERANCES, to_um, "um", "--tolerance, or tolerance_um in the process file"),
+        (
+            "chord tolerance",
+            process.chord_tolerance,
+            *TOLERANCES,
+            to_um,
+            "um",
+            "chord_tolerance_um in the process file",
+        ),
     )
-    for key, value, low, high, convert, unit in ranges:
+    for key, value, low, high, convert, unit, source in ranges:
         if not low <= value <= high:
             raise ProcessError(
                 f"a {key} of {convert(value):.6g} {unit} is out of range",
                 where=f"process {process.name}",
-                hint=f"it must be from {convert(low):.6g} to {convert(high):.6g} {unit}",
+                hint=f"it must be from {convert(low):.6g} to {convert(high):.6g} {unit}: {source}",
             )
     return process
 

@@ -27,6 +27,9 @@ SPACING: Final = 5e-4
 STEP: Final = 0.1
 """Largest turn of an arc between gridpoints, rad: the best speed on an arc changes with the angle."""
 
+GROWTH: Final = 0.7
+"""How much wider intervals are per distance from the end of their segment, up to ``SPACING``."""
+
 INTERVALS: Final = 4
 """Fewest intervals per line or arc."""
 
@@ -93,7 +96,7 @@ def parametrize(path: Path, robot: Robot, limits: Limits, *, where: str) -> Time
         InfeasibleError: there is none; says where the path stops being drivable.
         RobotError: the path leaves the reach of the robot.
     """
-    grid = _Grid.over(path)
+    grid = _Grid.over(path, limits)
     ends = [_End.of(path, robot, limits, grid.segment, inside) for inside in (grid.start, grid.end)]
     bound = _squared_speed_bound(ends)
     squared = _solve(grid.distance, ends, bound, _right_hand_side(robot, limits), where)
@@ -119,14 +122,37 @@ class _Grid:
     distance: Array
 
     @classmethod
-    def over(cls, path: Path) -> _Grid:
-        turn = path.length * np.abs(path.curvature)
-        count = np.maximum(INTERVALS, np.ceil(np.maximum(path.length / SPACING, turn / STEP))).astype(np.int64)
+    def over(cls, path: Path, limits: Limits) -> _Grid:
+        """Intervals that are fine where the speed may change fast: near the ends of segments, and on tight arcs.
+
+        At d from the nearer end of a segment they are about h(d) = min(widest, finest + d GROWTH) wide, so that the
+        integral of 1 / h counts them; its inverse gives the gridpoints.
+        """
+        widest = np.minimum(SPACING, STEP / np.maximum(np.abs(path.curvature), 1e-9))
+        finest = np.minimum(widest, 0.25 * limits.speed**2 / limits.acceleration)
+        half = 0.5 * path.length
+        graded = (widest - finest) / GROWTH
+        needed = 2.0 * np.where(
+            half <= graded,
+            np.log1p(GROWTH * half / finest) / GROWTH,
+            np.log(widest / finest) / GROWTH + (half - graded) / widest,
+        )
+        count = np.maximum(INTERVALS, np.ceil(needed - 1e-9)).astype(np.int64)
         segment = np.repeat(np.arange(len(count)), count)
         index = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
-        width = (path.length / count)[segment]
-        distance = np.concatenate([[0.0], np.cumsum(width)])
-        return cls(segment, index * width, (index + 1) * width, distance)
+
+        def place(passed: IntArray) -> Array:
+            """Where each segment's ``passed`` first intervals end, (I,) m."""
+            nearer = np.minimum(passed, count[segment] - passed) * (needed / count)[segment]
+            low, high = finest[segment], widest[segment]
+            grown = low * np.expm1(np.minimum(GROWTH * nearer, np.log(high / low))) / GROWTH
+            from_end = grown + np.maximum(nearer - np.log(high / low) / GROWTH, 0.0) * high
+            from_end = np.minimum(from_end, half[segment])
+            return np.asarray(np.where(2 * passed <= count[segment], from_end, path.length[segment] - from_end))
+
+        start, end = place(index), place(index + 1)
+        offset = np.concatenate([[0.0], np.cumsum(path.length)])
+        return cls(segment, start, end, np.append(offset[segment] + start, offset[-1]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,9 +12,11 @@ from deltacam.verification.measure import DIFFERENCES, ROUNDING_DEG, at_most, pe
 def joint_range(evidence: Evidence) -> Check:
     """No joint leaves its range; negative is inside."""
     q, joints = evidence.program.q, evidence.robot.joints
-    beyond = np.degrees(np.maximum(joints.min - q, q - joints.max)) - ROUNDING_DEG
-    joint = int(np.argmax(beyond.max(axis=0)))
-    return at_most(evidence, "joint range", beyond[:, joint], 0.0, "deg beyond", note=f"joint {joint + 1}")
+    margin = np.degrees(np.minimum(q - joints.min, joints.max - q)) + ROUNDING_DEG
+    row, joint = (int(index) for index in np.unravel_index(np.argmin(margin), margin.shape))
+    worst = float(margin[row, joint])
+    where = f"joint {joint + 1}, {evidence.place(row)}"
+    return Check("joint range (at least)", worst >= 0.0, worst, 0.0, "deg inside", row, where)
 
 
 def joint_speed(evidence: Evidence) -> Check:

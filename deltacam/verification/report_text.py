@@ -31,7 +31,9 @@ def to_text(report: Report) -> str:
 def _verdict(report: Report, failed: list[Check]) -> str:
     subject = f"{plain(report.summary['drawing'])} ({report.summary['mode']})"
     if report.passed:
-        return f"PASSED  {subject}: all {len(report.checks)} checks"
+        compared = "part_size_mm" in report.summary or report.summary["mode"] == "frame"
+        missing = "" if compared else "; not compared with the drawing (--drawing)"
+        return f"PASSED  {subject}: all {len(report.checks)} checks{missing}"
     return f"FAILED  {subject}: {len(failed)} of {len(report.checks)} checks: {', '.join(c.name for c in failed)}"
 
 

@@ -103,7 +103,7 @@ def test_an_edited_program_fails_with_exit_code_1(tmp_path: Path) -> None:
         (["plan", "wrench.dxf", "--robot", "delta-30"], "delta-300"),
         (["plan", "wrench.dxf", "--robot", "bad.toml"], "base_radius_mm"),
         (["plan", "wrench.dxf", "--process", "stel-1mm-fibre"], "steel-1mm-fibre"),
-        (["plan", "wrench.dxf", "-o", "text.dxf"], "cannot be written"),
+        (["plan", "wrench.dxf", "-o", "text.dxf"], "not a folder"),
     ],
 )
 def test_what_the_user_must_change_is_said_with_exit_code_2(tmp_path: Path, arguments: list[str], says: str) -> None:
@@ -161,3 +161,45 @@ def test_a_fault_of_ours_is_exit_code_3_and_asks_for_a_report(tmp_path: Path) ->
         assert "ZeroDivisionError" in run.stderr
         assert "report it" in run.stderr
         assert ("Traceback" in run.stderr) == bool(flag)
+
+
+def test_an_interrupt_leaves_nothing_half_written(tmp_path: Path) -> None:
+    code = (
+        "import deltacam.pipeline as p, os, signal\n"
+        "def interrupted(*a, **k): os.kill(os.getpid(), signal.SIGINT)\n"
+        "p.report_json.to_json = interrupted\n"
+        "from deltacam_cli.main import main; main()"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code, "plan", str(DXF / "wrench-inch.dxf")],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 130
+    assert "interrupted" in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_reader_that_goes_away_is_no_fault_and_no_failed_check(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", "from deltacam_cli.main import main; main()", "plan", str(DXF / "wrench-inch.dxf")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    child = subprocess.Popen(
+        command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert child.stdout is not None
+    assert child.stderr is not None
+    child.stdout.close()
+    assert child.stderr.read() == ""
+    child.stderr.close()
+    assert child.wait() == 141
+
+
+@pytest.mark.parametrize("arguments", [["plna", "a.dxf"], ["plan", "a.dxf", "--corner", "slow"]])
+def test_a_wrong_command_line_is_answered_like_any_other_error(tmp_path: Path, arguments: list[str]) -> None:
+    run = deltacam(*arguments, folder=tmp_path)
+    assert run.returncode == 2
+    assert run.stderr.startswith("error: ")
+    assert "\nhint: see `deltacam" in run.stderr

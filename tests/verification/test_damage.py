@@ -256,7 +256,7 @@ def test_damage_is_found_by_its_check(bench: Bench, program: Program, damage: st
 
 # In test_verify.py.
 ELSEWHERE = {
-    "joint range",
+    "joint range (at least)",
     "joint speed",
     "joint acceleration",
     "pressure angle",
