@@ -69,7 +69,8 @@ def _offset_one(contour: Contour, kerf: float) -> KerfResult:
     shift = -kerf / 2.0 if contour.is_hole else kerf / 2.0
     points, segment = curves.flatten(contour.curve, FLATTENING)
     region = shapely.Polygon(points if len(points) >= 3 else None).buffer(shift, quad_segs=_quad_segments(kerf / 2.0))
-    parts = [shapely.geometry.polygon.orient(part) for part in getattr(region, "geoms", [region])]
+    pieces = [piece for piece in getattr(region, "geoms", [region]) if not piece.is_empty]
+    parts = [shapely.geometry.polygon.orient(piece) for piece in pieces]
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors) if ring.length > SMALLEST_RING]
     source = Source(contour.curve, points, segment, shift)
     traced = [trace_ring(source, shapely.get_coordinates(ring)[:-1]) for ring in rings]
