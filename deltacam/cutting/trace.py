@@ -199,9 +199,11 @@ def _matches(source: Source, traced: Curve, ring: Array) -> bool:
     """
     flat, _ = curves.flatten(traced, FIT / 4.0)
     middle = 0.5 * (flat + np.roll(flat, -1, axis=0))
-    off = max(np.abs(_nearest(source, points)[2] - abs(source.shift)).max() for points in (flat, middle))
-    there = shapely.STRtree(_edges(ring)).query_nearest(shapely.points(flat), return_distance=True, all_matches=False)[
-        1
-    ]
-    back = shapely.STRtree(_edges(flat)).query_nearest(shapely.points(ring), return_distance=True, all_matches=False)[1]
-    return bool(off <= FIT and max(there.max(), back.max()) <= _SEARCH)
+    off = np.abs(_nearest(source, np.concatenate([flat, middle]))[2] - abs(source.shift)).max()
+    return bool(off <= FIT and max(_farthest(traced.points, ring), _farthest(ring, flat)) <= _SEARCH)
+
+
+def _farthest(points: Array, ring: Array) -> float:
+    """The largest distance of any of ``points`` (N, 2) m from the closed polyline ``ring`` (K, 2) m."""
+    tree = shapely.STRtree(_edges(ring))
+    return float(tree.query_nearest(shapely.points(points), return_distance=True, all_matches=False)[1].max())
