@@ -130,7 +130,8 @@ def plan(
     program = csv.read(io.BytesIO(content), name=Outputs.of(drawing, ".").program.name)
     progress("verify", 0, 1)
     report = verification.verify(program, drawing=part)
-    report = replace(report, findings=(*report.findings, *findings))
+    summary = {**report.summary, "derived_joint_limits": list(robot.joints.derived)}
+    report = replace(report, summary=summary, findings=(*report.findings, *findings))
     progress("verify", 1, 1)
     return Planned(program, report, part, content)
 

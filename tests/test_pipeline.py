@@ -17,6 +17,7 @@ from deltacam.geometry import curve as curves
 from deltacam.model import BlockKind, Mode
 from deltacam.pipeline import Outputs, Planned, plan, plan_to_folder, verify
 from deltacam.program.formats import read_program
+from deltacam.verification.report_text import to_text
 
 DXF = Path(__file__).parent / "data" / "dxf"
 DEG = np.pi / 180.0
@@ -90,6 +91,11 @@ def test_the_same_input_gives_the_same_bytes_from_any_folder(
     again, outputs = plan_to_folder(Path(copy).name, "out", unit="mm")
     assert again.content == drone.content == outputs.program.read_bytes()
     assert str(tmp_path).encode() not in outputs.program.read_bytes() + outputs.report_html.read_bytes()
+
+
+def test_the_report_says_that_the_joint_limits_are_derived(drone: Planned) -> None:
+    assert drone.report.summary["derived_joint_limits"] == ["max_speed", "max_acceleration"]
+    assert "derived from the tool rating" in to_text(drone.report)
 
 
 def test_a_dry_run_and_a_frame_keep_the_laser_off(drone: Planned) -> None:

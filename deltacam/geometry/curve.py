@@ -155,7 +155,8 @@ def flatten(curve: Curve, sagitta: float) -> tuple[Array, IntArray]:
     turn = np.abs(turns(curve))
     radius = np.divide(lengths(curve), turn, out=np.full_like(turn, np.inf), where=turn > 0.0)
     # A chord of angle a has the sagitta r (1 - cos(a / 2)); at least a square is left of a circle.
-    step = np.minimum(2.0 * np.arccos(np.clip(1.0 - sagitta / radius, -1.0, 1.0)), 0.5 * np.pi)
+    rise = np.divide(sagitta, radius, out=np.zeros_like(radius), where=radius > 0.0)
+    step = np.minimum(2.0 * np.arccos(np.clip(1.0 - rise, -1.0, 1.0)), 0.5 * np.pi)
     pieces = np.ceil(np.divide(turn, step, out=np.ones_like(turn), where=step > 0.0)).astype(np.int64)
     pieces = np.maximum(pieces, 1)
     segment = np.repeat(np.arange(len(turn)), pieces)

@@ -47,7 +47,8 @@ def _figures(summary: Mapping[str, Any]) -> list[str]:
         lengths = f"{summary['cut_length_mm']:.1f} mm cut, {summary['rapid_length_mm']:.1f} mm rapid"
         lines.append(f"  path     {lengths}, {contours}{_part_size(summary)}")
     process = f"kerf {_number(summary['kerf_mm'])} mm, feed {_number(summary['feed_mm_s'])} mm/s"
-    lines.append(f"  robot    {plain(summary['robot'])}; {plain(summary['process'])}, {process}")
+    derived = " (joint limits derived from the tool rating)" if summary.get("derived_joint_limits") else ""
+    lines.append(f"  robot    {plain(summary['robot'])}{derived}; {plain(summary['process'])}, {process}")
     if summary["share_of_limit"]:
         used = summary["share_of_limit"].items()
         shares = ", ".join(f"{name.removesuffix(' while cutting')} {100 * share:.0f} %" for name, share in used)

@@ -103,3 +103,10 @@ def test_transform_scales_turns_and_shifts() -> None:
     moved = curves.transform(slot(), scale=2.0, rotation=math.pi / 2, shift=(1.0, 0.0))
     assert curves.bounds(moved) == pytest.approx((0.99, -0.05, 1.01, 0.05), abs=1e-12)
     assert curves.signed_area(moved) == pytest.approx(4 * curves.signed_area(slot()))
+
+
+def test_an_arc_of_no_length_is_one_point() -> None:
+    curve = Curve(points=np.array([[0.0, 0.0], [0.0, 0.0], [0.01, 0.0], [0.0, 0.01]]), bulges=np.array([0.5, 0, 0, 0]))
+    points, segment = curves.flatten(curve, 1e-6)
+    assert points == pytest.approx(curve.points)
+    assert segment.tolist() == [0, 1, 2, 3]
