@@ -124,6 +124,18 @@ def test_a_turned_and_moved_part_verifies() -> None:
     assert planned.program.placement.rotation == pytest.approx(37.0 * DEG)
 
 
+def test_the_first_cut_begins_at_its_point_nearest_to_the_park_position() -> None:
+    planned = plan(DXF / "channel-bulge-inch.dxf", robot="irb360-1600", at=(0.2, -0.1), rotation=0.7)
+    program = planned.program
+    where = program.placement
+    (contour,) = planned.drawing.contours
+    placed = curves.transform(contour.curve, rotation=where.rotation, shift=(where.x, where.y))
+    path = shapely.Polygon(curves.flatten(placed, 1e-7)[0]).buffer(program.process.kerf / 2.0, quad_segs=48).exterior
+    pierce = program.robot.forward(program.q[[program.blocks[1].first]])[0, :2]
+    park = program.robot.workspace.park
+    assert np.hypot(*(pierce - park)) == pytest.approx(path.distance(shapely.Point(park)), abs=1e-6)
+
+
 @pytest.mark.parametrize(
     ("options", "kind", "says"),
     [

@@ -90,6 +90,25 @@ def test_tangent_lines_and_arcs_stay_tangent() -> None:
         assert curves.corner_angles(cut.curve) == pytest.approx(0.0, abs=1e-9)
 
 
+def test_shallow_corners_are_rounded_too() -> None:
+    angle = 2.0 * np.pi * np.arange(100) / 100
+    polygon = curves.polygon(0.05 * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    (cut,) = offset([contour(polygon)], kerf=4e-4).cuts
+    assert len(cut.curve.points) == 200
+    assert curves.corner_angles(cut.curve) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_arc_of_more_than_half_a_turn_comes_in_two() -> None:
+    keyhole = Curve(
+        points=np.array([[0.03, -0.002], [0.03, 0.002], [0.00995, 0.001], [0.00995, -0.001]]),
+        bulges=np.array([0, 0, 1 / np.tan(0.0501), 0]),
+    )
+    for depth in (0, 1):
+        (cut,) = offset([contour(keyhole, depth=depth)], kerf=2e-4).cuts
+        assert np.abs(cut.curve.bulges).max() <= 1.01
+        assert len(cut.curve.points) >= 5
+
+
 def test_no_kerf_means_the_drawn_line() -> None:
     drawn = contour(slot(0.04, 0.01))
     assert offset([drawn], kerf=0.0).cuts[0].curve is drawn.curve

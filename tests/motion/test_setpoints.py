@@ -99,6 +99,14 @@ def test_a_move_ends_on_a_tick_and_is_stretched_by_less_than_one() -> None:
     assert 0.0 < 0.05 - x[-1] <= 0.5 * 23.0 * TICK**2 * 1.001
 
 
+def test_the_stretch_is_the_same_all_along() -> None:
+    path = straight(np.array([-0.025, 0.0]), np.array([0.025, 0.0]), PLACE.z)
+    law = parametrize(path, ROBOT, Limits(10.0, 23.0), where="line")
+    x = ROBOT.forward(sample(path, law, ROBOT))[:, 0]
+    # The motion is the same forwards and backwards, and so are the ticks, with the end as the tick after the last.
+    assert np.append(x, 0.025) == pytest.approx(-np.append(x, 0.025)[::-1], abs=2e-6)
+
+
 def test_a_move_shorter_than_a_tick_still_takes_one() -> None:
     path = straight(np.zeros(2), np.array([2e-6, 0.0]), PLACE.z)
     assert len(sample(path, parametrize(path, ROBOT, Limits(10.0, 23.0), where=""), ROBOT)) == 1
