@@ -246,6 +246,7 @@ def _cutting(
 def _frame(cuts: tuple[Cut, ...], robot: Robot, process: Process, where: Placement) -> setpoints.Setpoints:
     (left, bottom), (right, top) = placement.bounding_box(cuts)
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
+    placement.refuse_frame_outside(corners, robot=robot, placement=where)
     return setpoints.plan_frame(corners, robot=robot, process=process, placement=where)
 
 

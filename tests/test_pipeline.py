@@ -145,6 +145,7 @@ def test_the_first_cut_begins_at_its_point_nearest_to_the_park_position() -> Non
         ({"unit": "mm", "at": (0.1, 0.0)}, InfeasibleError, "25.075 mm"),
         ({"unit": "cm"}, InfeasibleError, "leaves the sheet"),
         ({"unit": "parsec"}, DeltacamError, "parsec"),
+        ({"unit": "mm", "at": (0.046, 0.0), "rotation": 45 * DEG, "mode": Mode.FRAME}, InfeasibleError, "frame"),
     ],
 )
 def test_a_failed_plan_leaves_no_program_of_an_earlier_run(
@@ -157,6 +158,19 @@ def test_a_failed_plan_leaves_no_program_of_an_earlier_run(
         plan_to_folder(DXF / "drone-top-onshape.dxf", tmp_path, **options)
     assert says in f"{caught.value.what} {caught.value.hint}"
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_tolerance_below_the_error_of_reading_is_refused_with_the_least_that_works() -> None:
+    from dataclasses import replace
+
+    from deltacam.cutting.process import load_process
+
+    process = load_process("steel-1mm-fibre")
+    with pytest.raises(InfeasibleError, match="only known to within") as caught:
+        plan(DXF / "gear-unitless.dxf", unit="in", robot="irb360-1600", process=replace(process, tolerance=2e-6))
+    assert "--tolerance 5.4um" in caught.value.hint
+    least = replace(process, tolerance=5.4e-6)
+    assert plan(DXF / "gear-unitless.dxf", unit="in", robot="irb360-1600", process=least).report.passed
 
 
 def test_a_failed_check_leaves_the_reports_and_no_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

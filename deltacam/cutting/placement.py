@@ -73,6 +73,21 @@ def refuse_outside(cuts: Sequence[Cut], *, robot: Robot, placement: Placement, u
     )
 
 
+def refuse_frame_outside(corners: Array, *, robot: Robot, placement: Placement) -> None:
+    """Refuse a bounding box, corners (4, 2) m in the sheet frame, that leaves the sheet.
+
+    Raises:
+        InfeasibleError: a corner is outside; says by how much.
+    """
+    box = curves.transform(curves.polygon(corners), rotation=placement.rotation, shift=(placement.x, placement.y))
+    excess = float(robot.workspace.excess(box.points).max())
+    if excess > _OUTSIDE:
+        raise InfeasibleError(
+            f"a corner of the frame leaves the sheet of robot {robot.name} ({_sheet(robot)}) by {to_mm(excess):.3f} mm",
+            hint="the part itself fits: use --dry-run, or move or turn it (--at, --rotate)",
+        )
+
+
 def _sheet(robot: Robot) -> str:
     area = robot.workspace
     if area.radius is not None:

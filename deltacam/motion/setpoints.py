@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Block, BlockKind, Cut, IntArray, Mode, Placement, Process
 from deltacam.motion.corners import pieces
 from deltacam.motion.parametrize import Limits, TimeLaw, parametrize
 from deltacam.motion.path import Path, from_curve, straight
+from deltacam.units import to_um
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
@@ -76,11 +78,11 @@ def plan_motion(
         progress: is told how many cuts are done, and of how many.
 
     Raises:
-        InfeasibleError: a move has no time law within the limits.
+        InfeasibleError: a move has no time law within the limits, or the tolerance is less than the errors before it.
         RobotError: a move leaves the reach.
     """
     power = process.power if mode is Mode.CUT else 0.0
-    deviation = max(0.0, process.tolerance - drawing_error - FIT_ALLOWANCE)
+    deviation = _left_for_corners(process.tolerance, drawing_error)
     rapid, cutting = rapid_limits(robot), cutting_limits(robot, process)
     tape = _Tape(robot, np.array(robot.workspace.park), placement.z)
     tape.rest(BlockKind.RAPID, ticks=1)
@@ -135,6 +137,20 @@ def cutting_limits(robot: Robot, process: Process) -> Limits:
         acceleration=robot.tool.max_acceleration,
         chord=process.chord_tolerance,
     )
+
+
+def _left_for_corners(tolerance: float, drawing_error: float) -> float:
+    """What reading and tracing leave of the tolerance, m."""
+    left = tolerance - drawing_error - FIT_ALLOWANCE
+    if left < -_ROUNDING:
+        least = to_um(drawing_error + FIT_ALLOWANCE)
+        raise InfeasibleError(
+            f"a tolerance of {to_um(tolerance):.3g} um is too small for this drawing, whose curves are only known to "
+            f"within {to_um(drawing_error):.2g} um",
+            hint=f"use at least --tolerance {math.ceil(least * 10.0) / 10.0:g}um; errors of reading come from splines, "
+            "from ellipses and from ends that do not quite meet",
+        )
+    return max(0.0, left)
 
 
 def _name(cut: Cut) -> str:
