@@ -11,7 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -137,7 +137,7 @@ def plan(
 
 
 def plan_to_folder(
-    drawing: str | Path, folder: str | Path, *, progress: Progress = _silent, **options: object
+    drawing: str | Path, folder: str | Path, *, progress: Progress = _silent, **options: Any
 ) -> tuple[Planned, Outputs]:
     """Plan a drawing and write its files: the reports always, the program only if every check passed.
 
@@ -153,7 +153,7 @@ def plan_to_folder(
     outputs = Outputs.of(drawing, folder)
     _make_folder(Path(folder))
     outputs.clear()
-    planned = plan(drawing, progress=progress, **options)  # type: ignore[arg-type]
+    planned = plan(drawing, progress=progress, **options)
     progress("report", 0, 1)
     write_whole(outputs.report_json, report_json.to_json(planned.report).encode())
     page = html.to_html(planned.report, planned.program, drawing=planned.drawing, title=Path(drawing).stem)
