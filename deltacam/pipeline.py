@@ -200,7 +200,7 @@ def _program(
     where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
     progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
-    placement.refuse_outside(shifted.cuts, robot=robot, placement=where, unit=part.unit)
+    placement.refuse_outside(shifted.cuts, robot=robot, placement=where, unit=part.unit_in_words)
     if mode is Mode.FRAME:
         moves = _frame(shifted.cuts, robot, process, where)
     else:

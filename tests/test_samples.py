@@ -66,7 +66,7 @@ def test_a_sample_states_its_unit_and_nests_as_expected(name: str) -> None:
     drawing = read(name)
     depth = np.array([contour.depth for contour in drawing.contours])
     ignored = [entry for entry in drawing.ledger if entry.outcome is Outcome.IGNORED]
-    assert drawing.unit == "mm (header)"
+    assert drawing.unit_in_words == "mm (header)"
     assert not [entry for entry in drawing.ledger if entry.outcome is Outcome.LOST]
     assert Expected(len(depth), int(np.sum(depth % 2 == 0)), int(depth.max()), len(ignored)) == EXPECTED[name]
 

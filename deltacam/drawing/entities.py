@@ -18,7 +18,8 @@ from deltacam.drawing import kinds, shapes
 from deltacam.drawing.document import translated
 from deltacam.errors import DrawingError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Curve
+from deltacam.geometry.pack import Pack
+from deltacam.model import Array, Curve, IntArray
 from deltacam.units import to_mm
 
 MAX_ENTITIES: Final = 1_000_000
@@ -173,7 +174,27 @@ class _Walk:
             yield matrix
 
 
-def read(document: Any, metres_per_unit: float) -> list[Entity]:
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawn:
+    """What a document draws.
+
+    Attributes:
+        entities: every one, in the order of the file, those of blocks after their INSERT.
+        curves: what they draw, M curves.
+        owner: (M,) the index of the entity that each curve is of; increasing.
+    """
+
+    entities: list[Entity]
+    curves: Pack
+    owner: IntArray
+
+    def without_curve(self) -> list[Entity]:
+        """The entities that draw no line."""
+        drawn = set(self.owner.tolist())
+        return [entity for i, entity in enumerate(self.entities) if i not in drawn]
+
+
+def read(document: Any, metres_per_unit: float) -> Drawn:
     """Every entity of the modelspace in the order of the file, those of blocks after their INSERT.
 
     Args:
@@ -184,7 +205,10 @@ def read(document: Any, metres_per_unit: float) -> list[Entity]:
         DrawingError: an entity that is damaged, not flat or absurdly far away; a missing or endless block.
     """
     scale = np.diag([metres_per_unit, metres_per_unit, metres_per_unit, 1.0])
-    return list(_Walk().visit(document.modelspace(), _Place(scale)))
+    found = list(_Walk().visit(document.modelspace(), _Place(scale)))
+    owner = np.array([i for i, entity in enumerate(found) if entity.curve is not None], dtype=np.int64)
+    pack = Pack.of(entity.curve for entity in found if entity.curve is not None)
+    return Drawn([replace(entity, curve=None) for entity in found], pack, owner)
 
 
 def _named(raw: Any, place: _Place) -> Entity:

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from deltacam.drawing import chains, duplicates, nodes, tidy
-from deltacam.drawing.entities import Entity
+from deltacam.drawing.entities import Drawn, Entity
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Curve, Finding, Outcome
 from deltacam.units import to_mm
@@ -62,14 +62,14 @@ class Joined:
     findings: list[Finding] = field(default_factory=list)
 
 
-def join(entities: Sequence[Entity]) -> Joined:
+def join(found: Drawn) -> Joined:
     """The closed loops that the entities form, joining ends at ``nodes.JOINING``; arcs stay exact.
 
     Raises:
         DrawingError: thousands of ends in one place.
     """
-    joined = Joined()
-    drawn = _drawn(entities, joined)
+    joined, entities = Joined(), found.entities
+    drawn = _drawn(found, joined)
     repeated = duplicates.find([curve for _, curve in drawn], nodes.JOINING)
     for later, first in repeated.items():
         joined.copies[drawn[later][0]] = drawn[first][0]
@@ -87,16 +87,14 @@ def point_mm(point: Array) -> str:
     return f"({to_mm(float(point[0])):.3f}, {to_mm(float(point[1])):.3f})"
 
 
-def _drawn(entities: Sequence[Entity], joined: Joined) -> list[tuple[int, Curve]]:
+def _drawn(found: Drawn, joined: Joined) -> list[tuple[int, Curve]]:
     """The curves to join, with the index of their entity."""
     drawn = []
-    for i, entity in enumerate(entities):
-        if entity.curve is None:
+    for k, (i, length) in enumerate(zip(found.owner.tolist(), found.curves.lengths(), strict=True)):
+        if length <= nodes.COINCIDENT:
+            joined.notes[i] = (Outcome.IGNORED, f"a {found.entities[i].kind} of length zero")
             continue
-        if curves.length(entity.curve) <= nodes.COINCIDENT:
-            joined.notes[i] = (Outcome.IGNORED, f"a {entity.kind} of length zero")
-            continue
-        drawn.append((i, entity.curve))
+        drawn.append((i, found.curves[k]))
     return drawn
 
 

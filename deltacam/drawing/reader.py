@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from deltacam.drawing import containment, document, entities, join, scale
-from deltacam.drawing.entities import Entity
+from deltacam.drawing.entities import Drawn, Entity
 from deltacam.errors import DrawingError
-from deltacam.geometry import curve as curves
 from deltacam.model import Contour, Drawing, Finding, LedgerEntry, Outcome
+from deltacam.units import to_mm
 
 
 def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: float | None = None) -> Drawing:
@@ -35,21 +35,23 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
     data = document.read_bytes(path)
     source = document.load(data, path.name)
     chosen = scale.choose(_header_unit(source, data), unit=unit, metres_per_unit=metres_per_unit)
-    drawn = entities.read(source, chosen.metres if chosen else 1e-3)
+    found = entities.read(source, chosen.metres if chosen else 1e-3)
+    drawn = found.entities
     if chosen is None:
-        raise _without_unit(drawn, source, path.name)
-    joined = join.join(drawn)
+        raise _without_unit(found, source, path.name)
+    joined = join.join(found)
     if not joined.loops:
-        raise _nothing_to_cut(drawn, joined, source, path.name)
+        raise _nothing_to_cut(found, joined, source, path.name)
     flat = [_contour(i + 1, loop, drawn) for i, loop in enumerate(joined.loops)]
     contours, nesting = containment.nest(flat, outlines=joined.outlines, tangles=joined.tangles)
-    findings = [*chosen.findings, *_layer_findings(drawn, source), *_ignored_findings(drawn, source)]
+    findings = [*chosen.findings, *_layer_findings(found, source), *_ignored_findings(found, source)]
     findings += [*joined.findings, *nesting]
     return Drawing(
         file=path.name,
         sha256=hashlib.sha256(data).hexdigest(),
         metres_per_unit=chosen.metres,
         unit=chosen.name,
+        unit_source=chosen.source,
         contours=contours,
         ledger=_ledger(drawn, joined),
         findings=tuple(findings),
@@ -75,7 +77,7 @@ def _ledger(drawn: Sequence[Entity], joined: join.Joined) -> tuple[LedgerEntry, 
     for i, entity in enumerate(drawn):
         if i in contour:
             outcome, reason = Outcome.CUT, ""
-        elif entity.curve is not None:
+        elif i in joined.notes:
             outcome, reason = joined.notes[i]
         else:
             outcome, reason = Outcome.MERGED if entity.is_insert else Outcome.IGNORED, entity.reason
@@ -84,30 +86,30 @@ def _ledger(drawn: Sequence[Entity], joined: join.Joined) -> tuple[LedgerEntry, 
     return tuple(entries)
 
 
-def _layer_findings(drawn: Sequence[Entity], source: Any) -> list[Finding]:
+def _layer_findings(found: Drawn, source: Any) -> list[Finding]:
     """One finding per layer that is frozen or off and holds curves."""
     hidden = {}
     for layer in source.layers:
         if layer.is_frozen() or layer.is_off():
             hidden[str(layer.dxf.name).casefold()] = "frozen" if layer.is_frozen() else "off"
-    counts = Counter(entity.layer for entity in drawn if entity.curve is not None)
-    found = []
+    counts = Counter(found.entities[i].layer for i in found.owner.tolist())
+    findings = []
     for layer, count in counts.items():
         state = hidden.get(layer.casefold())
         if state:
             what = f"the layer is {state}, but its {_counted(count, 'curve')} read like all others"
-            found.append(Finding(what, where=f"layer {layer}", hint="delete what is not to be cut"))
-    return found
+            findings.append(Finding(what, where=f"layer {layer}", hint="delete what is not to be cut"))
+    return findings
 
 
-def _ignored_findings(drawn: Sequence[Entity], source: Any) -> list[Finding]:
+def _ignored_findings(found: Drawn, source: Any) -> list[Finding]:
     """One finding per kind of entity that is not cut, and one for paper space."""
-    kinds = Counter((entity.kind, entity.reason) for entity in drawn if entity.curve is None and not entity.is_insert)
-    found = [Finding(f"{_counted(count, kind)} not cut: {reason}") for (kind, reason), count in kinds.items()]
+    kinds = Counter((entity.kind, entity.reason) for entity in found.without_curve() if not entity.is_insert)
+    findings = [Finding(f"{_counted(count, kind)} not cut: {reason}") for (kind, reason), count in kinds.items()]
     paper = _in_paper_space(source)
     if paper:
-        found.append(Finding(f"{_counted(paper, 'entity', 'entities')} not read: in paper space"))
-    return found
+        findings.append(Finding(f"{_counted(paper, 'entity', 'entities')} not read: in paper space"))
+    return findings
 
 
 def _in_paper_space(source: Any) -> int:
@@ -116,19 +118,19 @@ def _in_paper_space(source: Any) -> int:
     return sum(entity.dxftype() != "VIEWPORT" for layout in layouts for entity in layout)
 
 
-def _without_unit(drawn: Sequence[Entity], source: Any, file: str) -> DrawingError:
+def _without_unit(found: Drawn, source: Any, file: str) -> DrawingError:
     """The error for a drawing, read as if in mm, that states no unit."""
-    boxes = [curves.bounds(entity.curve) for entity in drawn if entity.curve is not None]
-    if not boxes:
-        return _nothing_to_cut(drawn, join.Joined(), source, file)
-    low_x, low_y, high_x, high_y = zip(*boxes, strict=True)
-    error = scale.missing((1e3 * (max(high_x) - min(low_x)), 1e3 * (max(high_y) - min(low_y))))
+    if not len(found.curves):
+        return _nothing_to_cut(found, join.Joined(), source, file)
+    boxes = found.curves.bounds()
+    width, height = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
+    error = scale.missing((to_mm(width), to_mm(height)))
     return DrawingError(error.what, where=file, hint=error.hint)
 
 
-def _nothing_to_cut(drawn: Sequence[Entity], joined: join.Joined, source: Any, file: str) -> DrawingError:
+def _nothing_to_cut(drawn: Drawn, joined: join.Joined, source: Any, file: str) -> DrawingError:
     """The error for a drawing without a closed contour, with what it does hold."""
-    kinds = Counter(entity.kind for entity in drawn if entity.curve is None)
+    kinds = Counter(entity.kind for entity in drawn.without_curve())
     found = [_counted(joined.open_chains, "open chain", verb=False)] if joined.open_chains else []
     found += [f"{count} {kind}" for kind, count in kinds.items()]
     paper = _in_paper_space(source)
@@ -137,7 +139,7 @@ def _nothing_to_cut(drawn: Sequence[Entity], joined: join.Joined, source: Any, f
     if slivers:
         found.append(f"{_counted(slivers, 'entity', 'entities', verb=False)} in closed lines that enclose nothing")
     if not found:
-        held = "it holds no entities" if not drawn else "it holds only lines of length zero"
+        held = "it holds no entities" if not drawn.entities else "it holds only lines of length zero"
         return DrawingError(f"nothing to cut: {held}", where=file, hint="export the drawing again")
     hint = "draw the part as closed outlines in the modelspace"
     notes = [reason for _, reason in joined.notes.values() if "gap of" in reason]

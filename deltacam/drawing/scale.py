@@ -31,12 +31,14 @@ class Scale:
 
     Attributes:
         metres: in one unit.
-        name: the unit, and who stated it: "mm (header)".
+        name: of the unit.
+        source: who states it: header, --units or given.
         findings: where what was stated does not agree.
     """
 
     metres: float
     name: str
+    source: str
     findings: tuple[Finding, ...] = ()
 
 
@@ -55,7 +57,7 @@ def choose(header: int | None, *, unit: str | None, metres_per_unit: float | Non
     if metres_per_unit is not None:
         if not (math.isfinite(metres_per_unit) and metres_per_unit > 0.0):
             raise DrawingError(f"{metres_per_unit} metres per unit is not a positive number")
-        return Scale(metres_per_unit, f"{_name(metres_per_unit)} (given)")
+        return Scale(metres_per_unit, _name(metres_per_unit), "given")
     name, metres = _HEADER_UNITS.get(header or 0, ("", 0.0))
     if unit is not None:
         stated = metres_per(unit)
@@ -63,9 +65,9 @@ def choose(header: int | None, *, unit: str | None, metres_per_unit: float | Non
         if metres and not math.isclose(metres, stated, rel_tol=1e-9):
             what = f"the file says its unit is {name}, but it is read in {_name(stated)} as --units says"
             findings = (Finding(what, hint="leave --units away if the file is right"),)
-        return Scale(stated, f"{_name(stated)} (--units)", findings)
+        return Scale(stated, _name(stated), "--units", findings)
     if metres:
-        return Scale(metres, f"{name} (header)")
+        return Scale(metres, name, "header")
     if header:
         what = f"the header's unit, $INSUNITS = {header}, is not one that a part is drawn in"
         raise DrawingError(what, hint="state the unit: --units mm")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,9 @@ SCALES = st.sampled_from([1.0, -1.0, 2.5, -0.4])
 
 
 def read(document: Any) -> list[entities.Entity]:
-    return entities.read(document, 1e-3)
+    found = entities.read(document, 1e-3)
+    drawn = dict(zip(found.owner.tolist(), found.curves, strict=True))
+    return [replace(entity, curve=drawn.get(i)) for i, entity in enumerate(found.entities)]
 
 
 def only(document: Any) -> Curve:

@@ -9,10 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deltacam.drawing import duplicates, tidy
-from deltacam.drawing.entities import Entity
+from deltacam.drawing.entities import Drawn, Entity
 from deltacam.drawing.join import Joined, join
 from deltacam.errors import DrawingError
 from deltacam.geometry import curve as curves
+from deltacam.geometry.pack import Pack
 from deltacam.model import Curve, Outcome
 
 MM = 1e-3
@@ -34,12 +35,9 @@ def segment(*points: tuple[float, float], bulge: float = 0.0) -> Curve:
     return Curve(points=MM * np.array(points), bulges=np.full(len(points) - 1, bulge), closed=False)
 
 
-def entity(number: int, curve: Curve) -> Entity:
-    return Entity(handle=f"{number:X}", kind="LINE", layer="CUT", block="", curve=curve)
-
-
 def joined(*shapes: Curve) -> Joined:
-    return join([entity(i, curve) for i, curve in enumerate(shapes)])
+    entities = [Entity(handle=f"{i:X}", kind="LINE", layer="CUT", block="") for i in range(len(shapes))]
+    return join(Drawn(entities, Pack.of(shapes), np.arange(len(shapes))))
 
 
 def pieces(curve: Curve) -> list[Curve]:

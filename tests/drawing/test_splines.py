@@ -15,12 +15,12 @@ from deltacam.geometry import curve as curves
 from deltacam.model import Curve
 
 
-def read(document: Any) -> list[entities.Entity]:
+def read(document: Any) -> entities.Drawn:
     return entities.read(document, 1e-3)
 
 
 def only(document: Any) -> Curve:
-    (drawn,) = [entity.curve for entity in read(document) if entity.curve is not None]
+    (drawn,) = read(document).curves
     return drawn
 
 
@@ -49,9 +49,9 @@ def test_a_spline_is_followed_within_a_micrometre(degree: int, points: list[Any]
     document = ezdxf.new()
     document.modelspace().add_spline().apply_construction_tool(tool)
     t = np.linspace(knots[degree], knots[count], 211)
-    (entity,) = read(document)
-    assert entity.curve is not None
-    assert farthest(entity.curve, tool.points(t)) < 1e-6
+    found = read(document)
+    (entity,), (curve,) = found.entities, found.curves
+    assert farthest(curve, tool.points(t)) < 1e-6
     assert entity.error < 1e-6
 
 

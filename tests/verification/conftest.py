@@ -48,7 +48,7 @@ def plate() -> Drawing:
         Contour(number, curve, "CUT", (f"{number}A", f"{number}B"), *NESTING[number])
         for number, curve in shapes(0.0).items()
     )
-    return Drawing("plate.dxf", "ab" * 32, 1e-3, "mm (header)", contours, ())
+    return Drawing("plate.dxf", "ab" * 32, 1e-3, "mm", "header", contours, ())
 
 
 def smooth(length: float, speed: float, acceleration: float, rate: float) -> np.ndarray:

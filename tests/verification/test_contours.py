@@ -27,7 +27,7 @@ def dumbbell() -> Drawing:
     points = [(-10, -3), (-4, -3), (-4, -0.05), (4, -0.05), (4, -3), (10, -3), (10, 3), (4, 3), (4, 0.05), (-4, 0.05)]
     outline = Contour(1, curves.polygon(np.array([(-20, -8), (20, -8), (20, 8), (-20, 8)]) * 1e-3), "CUT", ("1A",))
     hole = Contour(2, curves.polygon(np.array([*points, (-4, 3), (-10, 3)]) * 1e-3), "CUT", ("2A",), 1, 1)
-    return Drawing("dumbbell.dxf", "ab" * 32, 1e-3, "mm (header)", (outline, hole), ())
+    return Drawing("dumbbell.dxf", "ab" * 32, 1e-3, "mm", "header", (outline, hole), ())
 
 
 def rectangle(left: float, bottom: float, right: float, top: float) -> Curve:

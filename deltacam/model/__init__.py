@@ -1,0 +1,41 @@
+"""The frozen data that flows between the stages.
+
+Everything is SI: metres, radians, seconds. Arrays are read-only copies. There is no algorithm here.
+"""
+
+from deltacam.model.arrays import Array, BoolArray, IntArray, readonly
+from deltacam.model.curve import STRAIGHT, Curve
+from deltacam.model.drawing import DEFAULT_JOINING, Contour, Drawing, Layer, Operation, Rule, Selection
+from deltacam.model.findings import Finding
+from deltacam.model.ledger import LedgerEntry, Outcome
+from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement
+from deltacam.model.process import Corner, Process
+from deltacam.model.report import Check, Report
+
+__all__ = [
+    "DEFAULT_JOINING",
+    "STRAIGHT",
+    "Array",
+    "Block",
+    "BlockKind",
+    "BoolArray",
+    "Check",
+    "Contour",
+    "Corner",
+    "Curve",
+    "Cut",
+    "Drawing",
+    "Finding",
+    "IntArray",
+    "Layer",
+    "LedgerEntry",
+    "Mode",
+    "Operation",
+    "Outcome",
+    "Placement",
+    "Process",
+    "Report",
+    "Rule",
+    "Selection",
+    "readonly",
+]

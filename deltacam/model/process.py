@@ -1,0 +1,41 @@
+"""How a material is cut."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Corner = Literal["round", "stop"]
+
+
+@dataclass(frozen=True, slots=True)
+class Process:
+    """How a material is cut.
+
+    Attributes:
+        name: what the summary calls it.
+        source: where the values are from.
+        material: for people.
+        thickness: m.
+        kerf: width of the cut, m, >= 0.
+        feed: speed along the contour, m/s, > 0.
+        power: 0 < power <= 1 of the laser's rated power while cutting and piercing.
+        pierce_time: rest with the laser on before a cut, s, >= 0.
+        tolerance: largest distance of the planned path from the exact kerf path, m, > 0.
+        chord_tolerance: how far the motion may leave the planned path between ticks, m, > 0.
+        corner: whether sharp corners are rounded within the tolerance or stopped at.
+        gas: for people.
+    """
+
+    name: str
+    source: str
+    material: str
+    thickness: float
+    kerf: float
+    feed: float
+    power: float
+    pierce_time: float
+    tolerance: float = 20e-6
+    chord_tolerance: float = 20e-6
+    corner: Corner = "round"
+    gas: str = ""

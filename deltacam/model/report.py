@@ -1,0 +1,55 @@
+"""What a check of a program found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from deltacam.model.findings import Finding
+from deltacam.model.ledger import LedgerEntry
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One thing that was checked.
+
+    Attributes:
+        name: in words, the same in every report.
+        passed: whether the worst value is within the limit.
+        worst: the worst value, in ``unit``; None where there was nothing to measure.
+        limit: what it may be at most (or at least, as the name says), in ``unit``.
+        unit: of both.
+        tick: where the worst value is.
+        where: the place, contour or joint in words.
+    """
+
+    name: str
+    passed: bool
+    worst: float | None = None
+    limit: float | None = None
+    unit: str = ""
+    tick: int | None = None
+    where: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Report:
+    """What a check of a program found.
+
+    Attributes:
+        checks: in a fixed order.
+        summary: figures for people, by name.
+        ledger: of the drawing, where one was given.
+        findings: what a person should know.
+    """
+
+    checks: tuple[Check, ...]
+    summary: Mapping[str, Any]
+    ledger: tuple[LedgerEntry, ...] = ()
+    findings: tuple[Finding, ...] = field(default=())
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
