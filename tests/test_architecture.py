@@ -10,6 +10,7 @@ ROOT = Path(__file__).parent.parent
 
 MAY_IMPORT = {
     "errors": set(),
+    "plain": set(),
     "units": {"errors"},
     "settings": {"errors", "units"},
     "model": {"errors", "units"},
@@ -19,7 +20,8 @@ MAY_IMPORT = {
     "cutting": {"errors", "units", "settings", "model", "geometry", "robot"},
     "motion": {"errors", "units", "model", "geometry", "robot"},
     "program": {"errors", "units", "model", "robot"},
-    "verification": {"errors", "units", "model", "geometry", "robot", "drawing", "program"},
+    "verification": {"errors", "plain", "units", "model", "geometry", "robot", "drawing", "program"},
+    "inspection": {"errors", "plain", "units", "model", "geometry"},
     "pipeline": {
         "errors",
         "units",

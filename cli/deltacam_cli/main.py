@@ -118,7 +118,7 @@ def _refused_by_click(problem: click.ClickException, as_json: bool) -> int:
 def _refused(what: str, where: str, hint: str, as_json: bool) -> int:
     if as_json:
         show_json({"passed": False, "error": {"what": what, "where": where, "hint": hint}})
-    from deltacam.verification.plain import plain
+    from deltacam.plain import plain
 
     message = f"{where}: {what}" if where else what
     click.echo(f"error: {plain(message, longest=LONGEST_MESSAGE)}", err=True)

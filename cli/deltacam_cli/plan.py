@@ -91,7 +91,7 @@ def _process(name: str, *, kerf: str | None, feed: str | None, tolerance: str | 
 
 
 def _show(planned: Planned, outputs: Outputs, *, as_json: bool) -> None:
-    from deltacam.verification.plain import plain
+    from deltacam.plain import plain
     from deltacam.verification.report_json import to_dict
     from deltacam.verification.report_text import to_text
 

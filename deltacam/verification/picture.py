@@ -15,11 +15,11 @@ import numpy as np
 
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, BoolArray, Drawing, IntArray
+from deltacam.plain import plain
 from deltacam.program.program import Program
 from deltacam.robot.workspace import Workspace
 from deltacam.units import to_mm, to_um
 from deltacam.verification.evidence import LASER_KINDS, Evidence, gather, to_sheet
-from deltacam.verification.plain import plain
 
 _WIDTH: Final = 900.0
 _MARGIN: Final = 36.0

@@ -7,7 +7,7 @@ from itertools import zip_longest
 from typing import Any, Final
 
 from deltacam.model import Check, Report
-from deltacam.verification.plain import plain
+from deltacam.plain import plain
 
 _WIDEST_PLACE: Final = 100  # characters
 _MOST_FINDINGS: Final = 8

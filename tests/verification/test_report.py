@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deltacam.model import Check, Finding, LedgerEntry, Outcome, Report
+from deltacam.plain import plain
 from deltacam.program.program import Program
-from deltacam.verification.plain import plain
 from deltacam.verification.report_json import to_json
 from deltacam.verification.report_text import to_text
 from deltacam.verification.verify import verify
