@@ -13,6 +13,7 @@ MAY_IMPORT = {
     "plain": set(),
     "units": {"errors"},
     "settings": {"errors", "units"},
+    "defaults": {"errors", "units", "settings"},
     "model": {"errors", "units"},
     "geometry": {"errors", "units", "model"},
     "robot": {"errors", "units", "settings", "model", "geometry"},

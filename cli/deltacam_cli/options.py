@@ -1,18 +1,97 @@
-"""Reads the values of options that carry a unit.
+"""Options that several commands share, and the values of options that carry a unit.
 
-They are read by the command and not by click, so that a value that is wrong is an error like any other: with a place, a
-hint, in JSON where that is asked for, and after the program of an earlier run is out of the way.
+Values are read by the command and not by click, so that a value that is wrong is an error like any other: with a place,
+a hint, in JSON where that is asked for, and after the program of an earlier run is out of the way.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
 
 from deltacam.errors import DeltacamError
-from deltacam.units import metres_per, parse_angle, parse_length, parse_speed
+from deltacam.units import METRES_PER, metres_per, parse_angle, parse_length, parse_speed, to_mm
+
+if TYPE_CHECKING:
+    from deltacam.defaults import Defaults
+    from deltacam.model import Selection
 
 T = TypeVar("T")
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+_READING = (
+    click.option(
+        "--units",
+        metavar="UNIT",
+        help=f"What one unit of the drawing is: {', '.join(METRES_PER)}; overrides its header.",
+    ),
+    click.option("--layer", "layers", metavar="PATTERN", multiple=True, help="Only this layer; may be repeated."),
+    click.option(
+        "--ignore-layer", "ignored_layers", metavar="PATTERN", multiple=True, help="Not this layer; may be repeated."
+    ),
+    click.option("--join", metavar="LENGTH", help="Join ends that are up to so far apart, mm unless a unit is given."),
+)
+
+
+def reading_options(command: Command) -> Command:
+    """Add the options that say how a drawing is read.
+
+    The command receives ``units``, ``layers``, ``ignored_layers`` and ``join`` as they were written; `unit` and
+    `selection` read them.
+    """
+    for add in reversed(_READING):
+        command = add(command)
+    return command
+
+
+def defaults() -> Defaults:
+    """The user's own defaults, from the current folder or the folder for settings; says on stderr where from.
+
+    Raises:
+        DeltacamError: the file that holds them is wrong.
+    """
+    from deltacam.defaults import find
+    from deltacam.plain import plain
+
+    found = find([Path(), Path(click.get_app_dir("deltacam"))])
+    if found.file:
+        click.echo(f"note: defaults from {plain(found.file)}", err=True)
+    return found
+
+
+def selection(
+    defaults: Defaults,
+    *,
+    layers: tuple[str, ...],
+    ignored_layers: tuple[str, ...],
+    join: str | None,
+    accept_loss: bool = False,
+) -> Selection:
+    """Which lines of the drawing are read, and how far apart their ends may be.
+
+    Raises:
+        DeltacamError: a value is wrong; names the option.
+    """
+    from deltacam.defaults import JOINING
+    from deltacam.model import DEFAULT_JOINING, Selection
+
+    joining = length("--join", join)
+    if joining is not None and not JOINING[0] <= joining <= JOINING[1]:
+        low, high = map(to_mm, JOINING)
+        what = f"{to_mm(joining):.6g} mm is out of range"
+        raise DeltacamError(what, where="--join", hint=f"it must be from {low:g} to {high:g} mm")
+    for option, patterns in (("--layer", layers), ("--ignore-layer", ignored_layers)):
+        if not all(pattern.strip() for pattern in patterns):
+            raise DeltacamError("the name of a layer is empty", where=option, hint="leave it away for all layers")
+    return Selection(
+        layers=layers,
+        ignored_layers=ignored_layers,
+        joining=next(value for value in (joining, defaults.joining, DEFAULT_JOINING) if value is not None),
+        accept_loss=accept_loss,
+    )
 
 
 def length(option: str, text: str | None) -> float | None:
