@@ -23,15 +23,40 @@ METRES_PER: Final[dict[str, float]] = {
 }
 """Metres in one of each unit of length that deltacam accepts."""
 
-_LENGTH_ALIASES: Final[dict[str, str]] = {
-    "µm": "um",
-    "inch": "in",
-    "inches": "in",
-    '"': "in",
-    "feet": "ft",
-    "points": "pt",
+_OTHER_SPELLINGS: Final[dict[str, tuple[str, ...]]] = {
+    "um": ("\N{MICRO SIGN}m", "\N{GREEK SMALL LETTER MU}m", "micron", "microns"),
+    "mm": ("millimetre", "millimetres", "millimeter", "millimeters"),
+    "cm": ("centimetre", "centimetres", "centimeter", "centimeters"),
+    "m": ("metre", "metres", "meter", "meters"),
+    "mil": ("mils", "thou"),
+    "in": ("inch", "inches", '"'),
+    "ft": ("foot", "feet", "'"),
+    "pt": ("point", "points"),
 }
+_LENGTH_ALIASES: Final = {other: unit for unit, others in _OTHER_SPELLINGS.items() for other in others}
 _SECONDS_PER: Final[dict[str, float]] = {"s": 1.0, "min": 60.0}
+
+USUAL_SIZES: Final = (10e-3, 1.5)
+"""Smallest and largest size of a part that is no surprise, m."""
+
+POSSIBLE_SIZES: Final = (0.1e-3, 10.0)
+"""Smallest and largest size of a drawing that can be meant, m."""
+
+_GUESSES: Final = (
+    (("mm", "in", "cm", "m"), USUAL_SIZES),
+    (("mm", "in", "cm", "m"), (1e-3, POSSIBLE_SIZES[1])),
+    (("mil", "um"), USUAL_SIZES),
+)
+"""Units and sizes, those that are likeliest first."""
+
+_ISO_SIDES: Final = (419.53, 595.28, 841.89, 1190.55, 1683.78, 2383.94)
+"""Sides of the sheets A5 to A1 in points; hardly a length that somebody draws in millimetres."""
+
+_US_SHEETS: Final = ((612.0, 792.0), (612.0, 1008.0), (792.0, 1224.0))
+"""Letter, legal and tabloid in points."""
+
+_SAME_SIDE: Final = 0.01
+
 _NUMBER: Final = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 
@@ -51,10 +76,33 @@ def metres_per(unit: str) -> float:
     Raises:
         DeltacamError: the unit is not known.
     """
-    key = _LENGTH_ALIASES.get(unit.lower(), unit.lower())
+    word = unit.strip().lower()
+    key = _LENGTH_ALIASES.get(word, word)
     if key not in METRES_PER:
         raise DeltacamError(f"unknown unit of length {unit!r}", hint=f"use one of {', '.join(METRES_PER)}")
     return METRES_PER[key]
+
+
+def likely_units(width: float, height: float) -> tuple[str, ...]:
+    """The units in which a drawing would be of a size that parts have, the likeliest first; to propose, not to choose.
+
+    Args:
+        width: of the drawing in its own numbers, >= 0.
+        height: likewise.
+    """
+    larger = max(width, height)
+    found = ["pt"] if _is_page(width, height) else []
+    for units, (low, high) in _GUESSES:
+        found += [unit for unit in units if low <= larger * METRES_PER[unit] <= high]
+    return tuple(dict.fromkeys(found))
+
+
+def _is_page(width: float, height: float) -> bool:
+    """Whether this is the size of a sheet of paper in points, as programs for drawing write it."""
+    sides = sorted((width, height))
+    iso = any(abs(side - known) <= _SAME_SIDE for side in sides for known in _ISO_SIDES)
+    us = any(all(abs(s - k) <= _SAME_SIDE for s, k in zip(sides, sheet, strict=True)) for sheet in _US_SHEETS)
+    return iso or us
 
 
 def parse_length(text: str) -> float:

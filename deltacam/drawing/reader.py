@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,15 @@ from deltacam.drawing import containment, document, entities, join, scale
 from deltacam.drawing.entities import Drawn, Entity
 from deltacam.errors import DrawingError
 from deltacam.model import Contour, Drawing, Finding, LedgerEntry, Outcome
-from deltacam.units import to_mm
 
 
-def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: float | None = None) -> Drawing:
+def read_drawing(
+    path: str | Path,
+    *,
+    unit: str | None = None,
+    metres_per_unit: float | None = None,
+    default_unit: str | None = None,
+) -> Drawing:
     """The closed contours of a DXF file's modelspace, and what became of every entity.
 
     Ends are joined at 0.01 mm. Entities on frozen layers and on layers that are off are read like all others, with a
@@ -25,6 +31,7 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
         path: the DXF file.
         unit: mm, cm, m, um, in, ft, mil or pt; wins over the file's header, with a finding where they differ.
         metres_per_unit: an exact factor; wins over both.
+        default_unit: what one unit is where the file does not say.
 
     Raises:
         DrawingError: the file cannot be read, states no unit, is not flat, has contours that cross, or holds nothing
@@ -34,18 +41,21 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
     path = Path(path)
     data = document.read_bytes(path)
     source = document.load(data, path.name)
-    chosen = scale.choose(_header_unit(source, data), unit=unit, metres_per_unit=metres_per_unit)
-    found = entities.read(source, chosen.metres if chosen else 1e-3)
+    header = scale.read_header(source, data)
+    chosen = scale.choose(header, unit=unit, metres_per_unit=metres_per_unit, default=default_unit)
+    found = entities.read(source, chosen.metres)
     drawn = found.entities
-    if chosen is None:
-        raise _without_unit(found, source, path.name)
-    joined = join.join(found)
+    units = scale.findings(chosen, _size(found), header)
+    _refuse_blocking(units, found, source, path.name)
+    joined = _by_entity(join.join(found.curves, name=lambda i: drawn[found.owner[i]].where), found)
     if not joined.loops:
         raise _nothing_to_cut(found, joined, source, path.name)
     flat = [_contour(i + 1, loop, drawn) for i, loop in enumerate(joined.loops)]
-    contours, nesting = containment.nest(flat, outlines=joined.outlines, tangles=joined.tangles)
-    findings = [*chosen.findings, *_layer_findings(found, source), *_ignored_findings(found, source)]
-    findings += [*joined.findings, *nesting]
+    outlines = [chain.curve for chain in joined.chains if chain.nearly_closed]
+    tangles = [chain.curve for chain in joined.chains if chain.ambiguous]
+    contours, nesting = containment.nest(flat, outlines=outlines, tangles=tangles)
+    findings = [*units, *_layer_findings(found, source), *_ignored_findings(found, source)]
+    findings += [*joined.findings, *_open_findings(joined, drawn), *nesting]
     return Drawing(
         file=path.name,
         sha256=hashlib.sha256(data).hexdigest(),
@@ -59,9 +69,29 @@ def read_drawing(path: str | Path, *, unit: str | None = None, metres_per_unit: 
     )
 
 
-def _header_unit(source: Any, data: bytes) -> int | None:
-    """$INSUNITS where the file itself gives it; ezdxf fills in a default where the file has no header."""
-    return source.header.get("$INSUNITS") if b"$INSUNITS" in data else None
+def _by_entity(joined: join.Joined, found: Drawn) -> join.Joined:
+    """The result of joining with the indices of entities in place of those of curves; chains become notes."""
+    owner = found.owner.tolist()
+    notes = {owner[i]: note for i, note in joined.notes.items()}
+    loops = []
+    for loop in joined.loops:
+        members = tuple(owner[i] for i in loop.members)
+        loops.append(replace(loop, members=members, error=loop.error + max(found.entities[i].error for i in members)))
+    for chain in joined.chains:
+        notes |= {owner[i]: (Outcome.IGNORED, chain.reason) for i in chain.members}
+    copies = {owner[later]: owner[first] for later, first in joined.copies.items()}
+    opened = [replace(chain, members=tuple(owner[i] for i in chain.members)) for chain in joined.chains]
+    return join.Joined(loops=loops, chains=opened, notes=notes, copies=copies, findings=joined.findings)
+
+
+def _open_findings(joined: join.Joined, drawn: Sequence[Entity]) -> list[Finding]:
+    """One finding per layer that counts its open chains."""
+    counts = Counter(drawn[chain.members[0]].layer for chain in joined.chains)
+    hint = "close them in the drawing if they are outlines"
+    return [
+        Finding(f"{_counted(count, 'open chain')} not cut", where=f"layer {layer}", hint=hint, kind="open")
+        for layer, count in counts.items()
+    ]
 
 
 def _contour(number: int, loop: join.Loop, drawn: Sequence[Entity]) -> Contour:
@@ -118,20 +148,28 @@ def _in_paper_space(source: Any) -> int:
     return sum(entity.dxftype() != "VIEWPORT" for layout in layouts for entity in layout)
 
 
-def _without_unit(found: Drawn, source: Any, file: str) -> DrawingError:
-    """The error for a drawing, read as if in mm, that states no unit."""
+def _size(found: Drawn) -> tuple[float, float] | None:
+    """Width and height of all curves, m."""
     if not len(found.curves):
-        return _nothing_to_cut(found, join.Joined(), source, file)
+        return None
     boxes = found.curves.bounds()
     width, height = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
-    error = scale.missing((to_mm(width), to_mm(height)))
-    return DrawingError(error.what, where=file, hint=error.hint)
+    return float(width), float(height)
+
+
+def _refuse_blocking(findings: Sequence[Finding], found: Drawn, source: Any, file: str) -> None:
+    """Raises where a finding blocks; that there is nothing to cut comes first."""
+    for finding in findings:
+        if finding.blocks:
+            if not len(found.curves):
+                raise _nothing_to_cut(found, join.Joined(), source, file)
+            raise DrawingError(finding.what, where=file, hint=finding.hint)
 
 
 def _nothing_to_cut(drawn: Drawn, joined: join.Joined, source: Any, file: str) -> DrawingError:
     """The error for a drawing without a closed contour, with what it does hold."""
     kinds = Counter(entity.kind for entity in drawn.without_curve())
-    found = [_counted(joined.open_chains, "open chain", verb=False)] if joined.open_chains else []
+    found = [_counted(len(joined.chains), "open chain", verb=False)] if joined.chains else []
     found += [f"{count} {kind}" for kind, count in kinds.items()]
     paper = _in_paper_space(source)
     found += [f"{_counted(paper, 'entity', 'entities', verb=False)} in paper space"] if paper else []
