@@ -1,18 +1,17 @@
-"""Curves of single entities to closed loops; every curve that becomes part of none gets a reason."""
+"""Curves of single entities to closed loops and open chains; every curve that is part of neither gets a reason."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from deltacam.drawing import chains, duplicates, nodes, tidy
-from deltacam.drawing.entities import Drawn, Entity
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Curve, Finding, Outcome
+from deltacam.geometry.pack import Pack
+from deltacam.model import DEFAULT_JOINING, Array, Curve, Finding, Outcome
 from deltacam.units import to_mm
 
 NEAR: Final = 2e-3
@@ -24,14 +23,18 @@ NOTHING_INSIDE: Final = "a closed line that encloses nothing"
 _LISTED: Final = 8
 
 
+Name = Callable[[int], str]
+"""How messages name a curve, by its index: ``layer CUT, LINE #2F``."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Loop:
-    """A closed curve and the entities that it is made of.
+    """A closed curve and the curves that it is made of.
 
     Attributes:
         curve: closed, counter-clockwise, m.
-        members: indices of its entities in the order of the curve, the first of the file first.
-        error: largest distance from what the entities draw, m.
+        members: indices of the curves in the order of the loop, the first of the file first.
+        error: how far joining moved a point, m.
     """
 
     curve: Curve
@@ -39,46 +42,68 @@ class Loop:
     error: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Chain:
+    """A line that does not close, and the curves that it is made of.
+
+    Attributes:
+        curve: open, m.
+        members: indices of the curves in the order of the chain.
+        reason: why it is open, in words.
+        gap: between its ends, m.
+        nearly_closed: whether it is an outline but for a small gap.
+        ambiguous: whether it runs between branch points, so that it could be closed in more than one way.
+    """
+
+    curve: Curve
+    members: tuple[int, ...]
+    reason: str
+    gap: float
+    nearly_closed: bool = False
+    ambiguous: bool = False
+
+
 @dataclass(slots=True)
 class Joined:
     """The result of joining.
 
     Attributes:
-        loops: in the order of their first entity.
-        notes: what became of each entity that is on no loop, by index: outcome and reason.
-        copies: entities that repeat an entity of a loop, or one without a loop: index to index.
-        open_chains: how many there are.
-        outlines: open chains that are closed but for a small gap, m.
-        tangles: chains between branch points, m; they enclose something, but it is not clear what.
+        loops: in the order of their first curve.
+        chains: lines that do not close, in the order of their first curve.
+        notes: what became of each curve that is in no loop or chain, by index: outcome and reason.
+        copies: curves that repeat a curve of a loop or chain: index to index.
         findings: what a person should know.
     """
 
     loops: list[Loop] = field(default_factory=list)
+    chains: list[Chain] = field(default_factory=list)
     notes: dict[int, tuple[Outcome, str]] = field(default_factory=dict)
     copies: dict[int, int] = field(default_factory=dict)
-    open_chains: int = 0
-    outlines: list[Curve] = field(default_factory=list)
-    tangles: list[Curve] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 
 
-def join(found: Drawn) -> Joined:
-    """The closed loops that the entities form, joining ends at ``nodes.JOINING``; arcs stay exact.
+def join(found: Pack, *, joining: float = DEFAULT_JOINING, name: Name) -> Joined:
+    """The closed loops and open chains that curves form; arcs stay exact.
+
+    Args:
+        found: the curves of the drawing, m.
+        joining: how far apart ends may be that are joined, m.
+        name: how messages name a curve.
 
     Raises:
         DrawingError: thousands of ends in one place.
     """
-    joined, entities = Joined(), found.entities
+    joined = Joined()
     drawn = _drawn(found, joined)
     repeated = duplicates.find([curve for _, curve in drawn], nodes.JOINING)
     for later, first in repeated.items():
         joined.copies[drawn[later][0]] = drawn[first][0]
     drawn = [pair for i, pair in enumerate(drawn) if i not in repeated]
-    loops = [Loop(curve, (i,), entities[i].error) for i, curve in drawn if curve.closed]
+    loops = [Loop(curve, (i,), 0.0) for i, curve in drawn if curve.closed]
     strands = [pair for pair in drawn if not pair[1].closed]
-    loops += _loops(strands, entities, joined)
-    _keep(sorted(loops, key=lambda loop: loop.members[0]), entities, joined)
-    _report_copies(joined, entities)
+    loops += _loops(strands, joined)
+    _keep(sorted(loops, key=lambda loop: loop.members[0]), joined, name)
+    _report_copies(joined, name)
     return joined
 
 
@@ -87,19 +112,19 @@ def point_mm(point: Array) -> str:
     return f"({to_mm(float(point[0])):.3f}, {to_mm(float(point[1])):.3f})"
 
 
-def _drawn(found: Drawn, joined: Joined) -> list[tuple[int, Curve]]:
-    """The curves to join, with the index of their entity."""
+def _drawn(found: Pack, joined: Joined) -> list[tuple[int, Curve]]:
+    """The curves to join, with their indices."""
     drawn = []
-    for k, (i, length) in enumerate(zip(found.owner.tolist(), found.curves.lengths(), strict=True)):
+    for i, length in enumerate(found.lengths()):
         if length <= nodes.COINCIDENT:
-            joined.notes[i] = (Outcome.IGNORED, f"a {found.entities[i].kind} of length zero")
+            joined.notes[i] = (Outcome.IGNORED, "of length zero")
             continue
-        drawn.append((i, found.curves[k]))
+        drawn.append((i, found[i]))
     return drawn
 
 
-def _loops(strands: list[tuple[int, Curve]], entities: Sequence[Entity], joined: Joined) -> list[Loop]:
-    """The loops of open curves; the others get a reason each, and findings that count them."""
+def _loops(strands: list[tuple[int, Curve]], joined: Joined) -> list[Loop]:
+    """The loops of open curves; the others become chains."""
     if not strands:
         return []
     ends = np.array([(curve.points[0], curve.points[-1]) for _, curve in strands])
@@ -109,25 +134,25 @@ def _loops(strands: list[tuple[int, Curve]], entities: Sequence[Entity], joined:
         joined.notes[strands[i][0]] = (Outcome.MERGED, "shorter than the joining tolerance of 0.01 mm")
     if traced.branches:
         joined.findings.append(_branch_finding(found.places[traced.branches]))
-    ambiguous = [(chain, "meets others at a branch point") for chain in traced.ambiguous]
-    open_chains = [(chain, _gap(chain, strands)) for chain in traced.open] + ambiguous
-    for chain, reason in open_chains:
-        count = "an open line" if len(chain) == 1 else f"an open chain of {len(chain)} entities"
-        for i, _ in chain:
-            joined.notes[strands[i][0]] = (Outcome.IGNORED, f"{count}, {reason}")
-    joined.open_chains = len(open_chains)
-    joined.tangles = [_open_curve(chain, strands) for chain in traced.ambiguous]
-    opened = [_open_curve(chain, strands) for chain in traced.open]
-    joined.outlines = [curve for curve in opened if _is_nearly_closed(curve)]
-    joined.findings += _open_findings([entities[strands[chain[0][0]][0]].layer for chain, _ in open_chains])
-    return [_loop(chain, strands, entities) for chain in traced.loops]
+    every = [(chain, False) for chain in traced.open] + [(chain, True) for chain in traced.ambiguous]
+    joined.chains = sorted((_chain(chain, strands, tangled) for chain, tangled in every), key=lambda c: min(c.members))
+    return [_loop(chain, strands) for chain in traced.loops]
 
 
-def _open_curve(chain: list[chains.Step], strands: list[tuple[int, Curve]]) -> Curve:
-    """The curve of an open chain."""
-    return tidy.link([curves.reverse(strands[i][1]) if turned else strands[i][1] for i, turned in chain], closed=False)[
-        0
-    ]
+def _chain(chain: list[chains.Step], strands: list[tuple[int, Curve]], tangled: bool) -> Chain:
+    """The chain of steps that do not close."""
+    pieces = [curves.reverse(strands[i][1]) if turned else strands[i][1] for i, turned in chain]
+    curve, _ = tidy.link(pieces, closed=False)
+    count = "an open line" if len(chain) == 1 else f"an open chain of {len(chain)} entities"
+    why = "meets others at a branch point" if tangled else _gap(curve)
+    return Chain(
+        curve=curve,
+        members=tuple(strands[i][0] for i, _ in chain),
+        reason=f"{count}, {why}",
+        gap=float(np.hypot(*(curve.points[-1] - curve.points[0]))),
+        nearly_closed=not tangled and _is_nearly_closed(curve),
+        ambiguous=tangled,
+    )
 
 
 def _is_nearly_closed(curve: Curve) -> bool:
@@ -136,7 +161,7 @@ def _is_nearly_closed(curve: Curve) -> bool:
     return len(curve.bulges) > 1 and (gap <= 0.05 * reach or gap <= min(NEAR, 0.25 * reach))
 
 
-def _loop(chain: list[chains.Step], strands: list[tuple[int, Curve]], entities: Sequence[Entity]) -> Loop:
+def _loop(chain: list[chains.Step], strands: list[tuple[int, Curve]]) -> Loop:
     """The loop of a closed chain, counter-clockwise from its first entity."""
     pieces = [curves.reverse(strands[i][1]) if turned else strands[i][1] for i, turned in chain]
     curve, moved = tidy.link(pieces, closed=True)
@@ -144,11 +169,10 @@ def _loop(chain: list[chains.Step], strands: list[tuple[int, Curve]], entities: 
         chain = chain[:1] + [(i, not turned) for i, turned in reversed(chain[1:])]
         pieces = [curves.reverse(pieces[0]), *(curves.reverse(piece) for piece in reversed(pieces[1:]))]
         curve, moved = tidy.link(pieces, closed=True)
-    members = tuple(strands[i][0] for i, _ in chain)
-    return Loop(curve, members, moved + max(entities[i].error for i in members))
+    return Loop(curve, tuple(strands[i][0] for i, _ in chain), moved)
 
 
-def _keep(loops: list[Loop], entities: Sequence[Entity], joined: Joined) -> None:
+def _keep(loops: list[Loop], joined: Joined, name: Name) -> None:
     """Puts the loops that enclose something, each once, into the result."""
     solid = []
     for loop in loops:
@@ -157,9 +181,8 @@ def _keep(loops: list[Loop], entities: Sequence[Entity], joined: Joined) -> None
         if curve is None:
             for i in loop.members:
                 joined.notes[i] = (Outcome.IGNORED, NOTHING_INSIDE)
-            joined.findings.append(
-                Finding("a closed line encloses nothing and is not cut", where=entities[loop.members[0]].where)
-            )
+            what = "a closed line encloses nothing and is not cut"
+            joined.findings.append(Finding(what, where=name(loop.members[0]), kind="sliver"))
         else:
             solid.append(replace(loop, curve=curve, error=loop.error + moved))
     repeated = duplicates.find([loop.curve for loop in solid], nodes.JOINING)
@@ -182,13 +205,11 @@ def _is_sliver(curve: Curve) -> bool:
     return bool(make_valid(Polygon(points)).buffer(-0.5 * nodes.JOINING).is_empty)
 
 
-def _gap(chain: list[chains.Step], strands: list[tuple[int, Curve]]) -> str:
+def _gap(curve: Curve) -> str:
     """Where an open chain ends, in words."""
-    (first, turned), (last, last_turned) = chain[0], chain[-1]
-    start = strands[first][1].points[-1 if turned else 0]
-    end = strands[last][1].points[0 if last_turned else -1]
+    start, end = curve.points[0], curve.points[-1]
     gap = float(np.hypot(*(end - start)))
-    if gap <= NEAR and len(chain) + len(strands[first][1].bulges) > 2:
+    if gap <= NEAR and len(curve.bulges) > 1:
         return f"gap of {to_mm(gap):.3g} mm at {point_mm(start)} mm"
     return f"from {point_mm(start)} to {point_mm(end)} mm"
 
@@ -199,23 +220,14 @@ def _branch_finding(places: Array) -> Finding:
     more = f" and {len(places) - _LISTED} more" if len(places) > _LISTED else ""
     many = "1 place" if len(places) == 1 else f"{len(places)} places"
     hint = "lines that could be closed in more than one way stay open: draw each outline for itself"
-    return Finding(f"more than two lines meet in {many}", where=f"{listed}{more} mm", hint=hint)
+    return Finding(f"more than two lines meet in {many}", where=f"{listed}{more} mm", hint=hint, kind="branch")
 
 
-def _open_findings(layers: list[str]) -> list[Finding]:
-    """One finding per layer that counts its open chains."""
-    found = []
-    for layer, count in Counter(layers).items():
-        what = "1 open chain is not cut" if count == 1 else f"{count} open chains are not cut"
-        found.append(Finding(what, where=f"layer {layer}", hint="close them in the drawing if they are outlines"))
-    return found
-
-
-def _report_copies(joined: Joined, entities: Sequence[Entity]) -> None:
-    """Notes every entity that is drawn twice, and one finding that counts them."""
+def _report_copies(joined: Joined, name: Name) -> None:
+    """Notes every curve that is drawn twice, and one finding that counts them."""
     for later, first in joined.copies.items():
-        joined.notes[later] = (Outcome.MERGED, f"duplicate of #{entities[first].handle}")
+        joined.notes[later] = (Outcome.MERGED, f"duplicate of {name(first)}")
     if joined.copies:
         many = "1 entity is" if len(joined.copies) == 1 else f"{len(joined.copies)} entities are"
-        first = min(joined.copies)
-        joined.findings.append(Finding(f"{many} drawn twice and cut once", where=entities[first].where))
+        where = name(min(joined.copies))
+        joined.findings.append(Finding(f"{many} drawn twice and cut once", where=where, kind="duplicate"))

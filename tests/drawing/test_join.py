@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deltacam.drawing import duplicates, tidy
-from deltacam.drawing.entities import Drawn, Entity
 from deltacam.drawing.join import Joined, join
 from deltacam.errors import DrawingError
 from deltacam.geometry import curve as curves
@@ -36,8 +35,7 @@ def segment(*points: tuple[float, float], bulge: float = 0.0) -> Curve:
 
 
 def joined(*shapes: Curve) -> Joined:
-    entities = [Entity(handle=f"{i:X}", kind="LINE", layer="CUT", block="") for i in range(len(shapes))]
-    return join(Drawn(entities, Pack.of(shapes), np.arange(len(shapes))))
+    return join(Pack.of(shapes), name=lambda i: f"layer CUT, LINE #{i:X}")
 
 
 def pieces(curve: Curve) -> list[Curve]:
