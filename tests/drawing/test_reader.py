@@ -111,9 +111,9 @@ def test_a_decimal_comma_is_refused_and_never_read_as_another_number(tmp_path: P
     ],
 )
 def test_the_unit_scales_the_drawing(reread: Any, insunits: int, unit: str | None, metres: float, name: str) -> None:
-    drawing = reread(square, insunits=insunits, unit=unit)
+    drawing = reread(lambda msp: msp.add_circle((10, 10), 10), insunits=insunits, unit=unit)
     assert (drawing.metres_per_unit, drawing.unit_in_words) == (metres, name)
-    assert curves.bounds(drawing.contours[0].curve) == pytest.approx((0, 0, 1000 * metres, 1000 * metres), abs=1e-12)
+    assert curves.bounds(drawing.contours[0].curve) == pytest.approx((0, 0, 20 * metres, 20 * metres), abs=1e-12)
     differs = unit is not None and insunits != 0
     assert sum(finding.what.startswith("the file says") for finding in drawing.findings) == differs
 

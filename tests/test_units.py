@@ -1,0 +1,75 @@
+"""Units that people write, and the units that a drawing may be in."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deltacam.errors import DeltacamError
+from deltacam.units import METRES_PER, likely_units, metres_per, parse_length, parse_speed
+
+
+@pytest.mark.parametrize(
+    ("text", "metres"),
+    [
+        ("0.2", 2e-4),
+        (" 0.2 mm ", 2e-4),
+        ("0.008in", 0.008 * 25.4e-3),
+        ('2"', 50.8e-3),
+        ("2'", 0.6096),
+        ("1e1um", 1e-5),
+        ("3\N{MICRO SIGN}m", 3e-6),
+        ("3\N{GREEK SMALL LETTER MU}m", 3e-6),
+        ("7 thou", 7 * 25.4e-6),
+        ("72pt", 25.4e-3),
+        ("2 Inches", 50.8e-3),
+        ("1 millimeter", 1e-3),
+    ],
+)
+def test_a_length_is_read_in_the_unit_that_it_states(text: str, metres: float) -> None:
+    assert parse_length(text) == pytest.approx(metres, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["", "mm", "1 2", "nan", "inf", "1e999", "2 furlongs", "1,5", "0x10"])
+def test_what_is_no_length_is_refused_with_an_example(text: str) -> None:
+    with pytest.raises(DeltacamError) as caught:
+        parse_length(text)
+    assert caught.value.hint
+
+
+def test_every_unit_has_a_speed() -> None:
+    for unit, metres in METRES_PER.items():
+        assert parse_speed(f"3{unit}/min") == pytest.approx(3 * metres / 60)
+
+
+def test_a_unit_is_known_in_any_case_and_an_unknown_one_lists_them_all() -> None:
+    assert metres_per(" MM ") == 1e-3
+    with pytest.raises(DeltacamError, match="ell") as caught:
+        metres_per("ell")
+    assert all(unit in caught.value.hint for unit in METRES_PER)
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "first"),
+    [
+        (206.0, 381.5, "mm"),
+        (6.38, 4.98, "in"),
+        (843.17, 841.89, "pt"),  # a page of an Illustrator drawing
+        (595.276, 841.89, "pt"),
+        (792.0, 612.0, "pt"),
+        (612.0, 300.0, "mm"),  # one side alone is a length like any other
+        (0.3, 0.2, "m"),
+        (2500.0, 1250.0, "mm"),  # a whole sheet
+        (9000.0, 20000.0, "mil"),
+        (50000.0, 80000.0, "um"),
+    ],
+)
+def test_the_likeliest_unit_makes_the_part_a_usual_size(width: float, height: float, first: str) -> None:
+    assert likely_units(width, height)[0] == first
+
+
+@given(st.floats(0.0, 1e12), st.floats(0.0, 1e12))
+def test_no_unit_is_proposed_that_makes_the_part_absurd(width: float, height: float) -> None:
+    found = likely_units(width, height)
+    assert len(set(found)) == len(found)
+    for unit in found:
+        assert 1e-3 <= max(width, height) * METRES_PER[unit] <= 10.0
