@@ -97,6 +97,7 @@ def plan(
     robot: Robot | str | Path = DEFAULT_ROBOT,
     process: Process | str | Path = DEFAULT_PROCESS,
     unit: str | None = None,
+    default_unit: str | None = None,
     at: tuple[float, float] = (0.0, 0.0),
     rotation: float = 0.0,
     mode: Mode = Mode.CUT,
@@ -109,6 +110,7 @@ def plan(
         robot: a robot, a built-in name, or the path of a robot file.
         process: a process, a built-in name, or the path of a process file.
         unit: what the drawing's numbers are, where the file does not say or is wrong: "mm", "in", ...
+        default_unit: what they are where neither the file nor ``unit`` says.
         at: where the centre of what is cut comes to lie, base frame, m.
         rotation: of the drawing about that centre, rad, counter-clockwise.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
@@ -123,7 +125,7 @@ def plan(
     robot = robot if isinstance(robot, Robot) else load_robot(robot)
     process = check_process(process if isinstance(process, Process) else load_process(process))
     progress("read", 0, 1)
-    part = read_drawing(drawing, unit=unit)
+    part = read_drawing(drawing, unit=unit, default_unit=default_unit)
     program, findings = _program(part, robot, process, at, rotation, mode, progress)
     progress("write", 0, 1)
     content = _content(program)
@@ -200,7 +202,9 @@ def _program(
     where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
     progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
-    placement.refuse_outside(shifted.cuts, robot=robot, placement=where, unit=part.unit_in_words)
+    placement.refuse_outside(
+        shifted.cuts, robot=robot, placement=where, unit=part.unit_in_words, metres_per_unit=part.metres_per_unit
+    )
     if mode is Mode.FRAME:
         moves = _frame(shifted.cuts, robot, process, where)
     else:

@@ -45,9 +45,11 @@ POSSIBLE_SIZES: Final = (0.1e-3, 10.0)
 _GUESSES: Final = (
     (("mm", "in", "cm", "m"), USUAL_SIZES),
     (("mm", "in", "cm", "m"), (1e-3, POSSIBLE_SIZES[1])),
-    (("mil", "um"), USUAL_SIZES),
 )
 """Units and sizes, those that are likeliest first."""
+
+_RARE: Final = ("mil", "um")
+"""Units that are likely only where no other one is."""
 
 _ISO_SIDES: Final = (419.53, 595.28, 841.89, 1190.55, 1683.78, 2383.94)
 """Sides of the sheets A5 to A1 in points; hardly a length that somebody draws in millimetres."""
@@ -92,9 +94,14 @@ def likely_units(width: float, height: float) -> tuple[str, ...]:
     """
     larger = max(width, height)
     found = ["pt"] if _is_page(width, height) else []
-    for units, (low, high) in _GUESSES:
-        found += [unit for unit in units if low <= larger * METRES_PER[unit] <= high]
-    return tuple(dict.fromkeys(found))
+    for units, sizes in _GUESSES:
+        found += [unit for unit in units if _within(larger * METRES_PER[unit], sizes)]
+    rare = [unit for unit in _RARE if _within(larger * METRES_PER[unit], USUAL_SIZES)]
+    return tuple(dict.fromkeys(found or rare))
+
+
+def _within(size: float, sizes: tuple[float, float]) -> bool:
+    return sizes[0] <= size <= sizes[1]
 
 
 def _is_page(width: float, height: float) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Contour, Cut, Placement
-from deltacam.units import to_mm
+from deltacam.units import METRES_PER, USUAL_SIZES, likely_units, to_mm
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
@@ -41,7 +41,9 @@ def place(contours: Sequence[Contour], *, robot: Robot, at: tuple[float, float],
     return Placement(x=float(x), y=float(y), rotation=rotation, z=robot.workspace.sheet_z)
 
 
-def refuse_outside(cuts: Sequence[Cut], *, robot: Robot, placement: Placement, unit: str) -> None:
+def refuse_outside(
+    cuts: Sequence[Cut], *, robot: Robot, placement: Placement, unit: str, metres_per_unit: float
+) -> None:
     """Refuse cuts that leave the sheet.
 
     Args:
@@ -49,14 +51,13 @@ def refuse_outside(cuts: Sequence[Cut], *, robot: Robot, placement: Placement, u
         robot: gives the sheet.
         placement: of the drawing.
         unit: what the drawing's numbers were taken as, for the message.
+        metres_per_unit: of that unit.
 
     Raises:
-        InfeasibleError: the worst contour is outside; says by how much.
+        InfeasibleError: the worst contour is outside; says by how much, and in which unit it would fit.
     """
-    excess = []
-    for cut in cuts:
-        curve = curves.transform(cut.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
-        excess.append(float(robot.workspace.excess(curves.flatten(curve, _FLATTENING)[0]).max()))
+    placed = [_placed(cut, placement) for cut in cuts]
+    excess = [float(robot.workspace.excess(points).max()) for points in placed]
     worst = int(np.argmax(excess))
     if excess[worst] <= _OUTSIDE:
         return
@@ -69,8 +70,39 @@ def refuse_outside(cuts: Sequence[Cut], *, robot: Robot, placement: Placement, u
         + (f"; so do {count - 1} other contours" if count > 1 else ""),
         where=f"contour {cut.contour} (layer {cut.layer}, #{cut.handles[0]})",
         hint=f"with its kerf the part is {width:.1f} x {depth:.1f} mm, one unit of the drawing taken as {unit}: "
-        "move it (--at), turn it (--rotate), take a larger robot (--robot), or check the unit (--units)",
+        + (
+            _fitting_unit(np.concatenate(placed), robot, (high - low) / metres_per_unit, metres_per_unit)
+            or "move it (--at), turn it (--rotate), take a larger robot (--robot), or check the unit (--units)"
+        ),
     )
+
+
+def _placed(cut: Cut, placement: Placement) -> Array:
+    """Points (N, 2) m along the cut, base frame."""
+    curve = curves.transform(cut.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
+    return curves.flatten(curve, _FLATTENING)[0]
+
+
+def _fitting_unit(points: Array, robot: Robot, drawn: Array, metres_per_unit: float) -> str:
+    """What to do about a part that is too large for the sheet and would not be in another unit; else empty.
+
+    Args:
+        points: of all cuts, (N, 2) m, base frame.
+        robot: gives the sheet.
+        drawn: the part's width and height in the drawing's own numbers.
+        metres_per_unit: that were used.
+    """
+    centre = (points.min(axis=0) + points.max(axis=0)) / 2.0
+    if robot.workspace.excess(points - centre).max() <= _OUTSIDE:
+        return ""  # it fits in another place
+    for name in likely_units(*drawn):
+        factor = METRES_PER[name] / metres_per_unit
+        fits = robot.workspace.excess(centre + factor * (points - centre)).max() <= _OUTSIDE
+        if fits and max(drawn) * METRES_PER[name] >= USUAL_SIZES[0]:
+            width, depth = to_mm(METRES_PER[name]) * drawn
+            size = f"in {name} it would be {width:.1f} x {depth:.1f} mm and fit"
+            return f"{size}: --units {name}, or take a larger robot (--robot) if the unit is right"
+    return ""
 
 
 def refuse_frame_outside(corners: Array, *, robot: Robot, placement: Placement) -> None:

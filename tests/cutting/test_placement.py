@@ -35,9 +35,48 @@ def test_a_part_that_leaves_the_sheet_is_refused_by_how_much_and_which() -> None
     part = contour(rectangle(0.29, 0.02), number=4)
     cuts = offset([part], kerf=0.0).cuts
     fits = place([part], robot=ROBOT, at=(0.0, 0.0), rotation=0.0)
-    refuse_outside(cuts, robot=ROBOT, placement=fits, unit="mm")
+    refuse_outside(cuts, robot=ROBOT, placement=fits, unit="mm", metres_per_unit=1e-3)
+    aside = place([part], robot=ROBOT, at=(0.01, 0.0), rotation=0.0)
     with pytest.raises(InfeasibleError) as caught:
-        refuse_outside(cuts, robot=ROBOT, placement=place([part], robot=ROBOT, at=(0.01, 0.0), rotation=0.0), unit="mm")
+        refuse_outside(cuts, robot=ROBOT, placement=aside, unit="mm", metres_per_unit=1e-3)
     assert "5.000 mm" in caught.value.what
     assert "contour 4" in caught.value.where
     assert "--at" in caught.value.hint
+
+
+def hint(width: float, height: float, metres: float, *, at: tuple[float, float] = (0.0, 0.0)) -> str:
+    """What to do about a part of so many units that leaves the sheet."""
+    part = contour(rectangle(width * metres, height * metres, at=(5.0, -3.0)))
+    where = place([part], robot=ROBOT, at=at, rotation=0.3)
+    with pytest.raises(InfeasibleError) as caught:
+        refuse_outside(offset([part], kerf=0.0).cuts, robot=ROBOT, placement=where, unit="x", metres_per_unit=metres)
+    return caught.value.hint
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "metres", "unit", "size"),
+    [
+        (41.0, 21.0, 25.4e-3, "mm", "41.0 x 21.0 mm"),
+        (9.0, 5.0, 0.3048, "in", "228.6 x 127.0 mm"),
+        (595.28, 300.0, 1e-3, "pt", "210.0 x 105.8 mm"),
+    ],
+)
+def test_a_part_that_would_fit_in_another_unit_is_refused_with_that_unit(
+    width: float, height: float, metres: float, unit: str, size: str
+) -> None:
+    assert f"in {unit} it would be {size} and fit: --units {unit}, or" in hint(width, height, metres)
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "metres", "at"),
+    [
+        (500.0, 300.0, 1e-3, (0.0, 0.0)),  # only smaller units than mm would do
+        (1.0, 1000.0, 25.4e-3, (0.0, 0.0)),  # does not fit in mm either
+        (0.2, 0.1, 1.0, (0.1, 0.0)),  # the place is wrong, not the size
+    ],
+)
+def test_no_unit_is_named_that_does_not_help(
+    width: float, height: float, metres: float, at: tuple[float, float]
+) -> None:
+    assert "and fit" not in hint(width, height, metres, at=at)
+    assert "move it (--at)" in hint(width, height, metres, at=at)

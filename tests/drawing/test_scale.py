@@ -184,7 +184,8 @@ def test_a_large_part_in_a_large_unit_is_doubted_and_still_planned(
     [
         (MM, 6.38, "162.052 x 81.026 mm if it were inch, 63.8 x 31.9 mm if it were cm, 6380 x 3190 mm if it were m"),
         (INCH, 0.2, "200 x 100 mm if it were m"),
-        (Header(13), 5000.0, "127 x 63.5 mm if it were mil"),
+        (Header(13), 5000.0, "5000 x 2500 mm if it were mm"),
+        (Header(8), 11811.0, "299.999 x 150 mm if it were mil"),
     ],
 )
 def test_a_small_part_is_named_with_its_other_sizes(header: Header, width: float, sizes: str) -> None:
