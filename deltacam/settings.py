@@ -75,6 +75,19 @@ class Table:
         self._tables.append(table)
         return table
 
+    def tables(self, key: str) -> tuple[Table, ...]:
+        """The tables that are written one by one under ``[[key]]``; none where it is missing."""
+        values = self._values[key] if self.has(key) else []
+        if not isinstance(values, list) or not all(isinstance(value, dict) for value in values):
+            raise self.problem(f"{key} = {_show(values)} must be sections", hint=f"write [[{key}]] above each of them")
+        name = f"{self._section}.{key}" if self._section else key
+        tables = [
+            Table(value, file=self._file, section=f"{name} {number}", error=self._error)
+            for number, value in enumerate(values, start=1)
+        ]
+        self._tables += tables
+        return tuple(tables)
+
     def number(self, key: str, *, minimum: float, maximum: float, default: float | Required = REQUIRED) -> float:
         """The number ``key``, from ``minimum`` to ``maximum`` in the file's own unit."""
         value = self._get(key, default, f"a number from {minimum:g} to {maximum:g}")
@@ -98,9 +111,19 @@ class Table:
             raise self.problem(f"{key} = {_show(value)} must be a list of {length} numbers")
         return tuple(self._bounded(key, item, minimum, maximum) for item in value)
 
-    def integer(self, key: str, *, minimum: int, maximum: int, default: int | Required = REQUIRED) -> int:
-        """The whole number ``key``, from ``minimum`` to ``maximum``."""
+    def integer(
+        self,
+        key: str,
+        *,
+        minimum: int,
+        maximum: int,
+        default: int | Required = REQUIRED,
+        names: Mapping[str, int] | None = None,
+    ) -> int:
+        """The whole number ``key``, from ``minimum`` to ``maximum``, or one of the ``names`` that stand for one."""
         value = self._get(key, default, f"a whole number from {minimum} to {maximum}")
+        if names and isinstance(value, str):
+            return names[self.choice(key, tuple(names))]
         if not isinstance(value, int) or isinstance(value, bool):
             raise self.problem(f"{key} = {_show(value)} is not a whole number", hint=f"allowed: {minimum} to {maximum}")
         if not minimum <= value <= maximum:

@@ -5,7 +5,16 @@ Everything is SI: metres, radians, seconds. Arrays are read-only copies. There i
 
 from deltacam.model.arrays import Array, BoolArray, IntArray, readonly
 from deltacam.model.curve import STRAIGHT, Curve
-from deltacam.model.drawing import DEFAULT_JOINING, Contour, Drawing, Layer, Operation, Rule, Selection
+from deltacam.model.drawing import (
+    DEFAULT_JOINING,
+    DEFAULT_RULES,
+    Contour,
+    Drawing,
+    Layer,
+    Operation,
+    Rule,
+    Selection,
+)
 from deltacam.model.findings import Finding
 from deltacam.model.ledger import LedgerEntry, Outcome
 from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement
@@ -14,6 +23,7 @@ from deltacam.model.report import Check, Report
 
 __all__ = [
     "DEFAULT_JOINING",
+    "DEFAULT_RULES",
     "STRAIGHT",
     "Array",
     "Block",

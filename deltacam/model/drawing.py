@@ -29,9 +29,9 @@ class Rule:
 
     Attributes:
         operation: of the entities that match.
-        layer: pattern of the layer's name with ``*`` and ``?``, in any case.
+        layer: pattern of the layer's name with ``*`` and ``?``, in any case; several with commas between them.
         color: AutoCAD colour index, 1 to 255, as it is seen: that of the layer where the entity says so.
-        linetype: pattern of the line type's name, in any case, as it is seen.
+        linetype: pattern of the line type's name as it is seen, like that of the layer.
         open: what is done with chains of these entities that do not close.
     """
 
@@ -42,6 +42,18 @@ class Rule:
     open: Operation = Operation.IGNORE
 
 
+_ENGRAVED: Final = (
+    "*ENGRAV*,*GRAVUR*,*GRAVIER*,ETCH*,*_ETCH*,*-ETCH*,* ETCH*,"
+    "SCORE,SCORES,SCORE_*,SCORE-*,SCORE *,SCORING*,*_SCORE,*-SCORE,* SCORE,"
+    "MARK,MARK_*,MARK-*,MARK *,MARKING*,IV_MARK_SURFACE"
+)  # names with sketch, underscore, market or centre mark in them are not meant
+
+DEFAULT_RULES: Final = (
+    Rule(Operation.ENGRAVE, layer=_ENGRAVED, open=Operation.ENGRAVE),
+    Rule(Operation.IGNORE, layer="DEFPOINTS"),  # which CAD programs never plot
+)
+"""What is done with the lines of a drawing where nobody says otherwise; all others are cut."""
+
 DEFAULT_JOINING: Final = 1e-5
 """Ends up to 0.01 mm apart are joined where nobody says otherwise."""
 
@@ -51,15 +63,16 @@ class Selection:
     """Which lines of a drawing are machined, and how far apart their ends may be.
 
     Attributes:
-        rules: the first one that matches an entity says what is done with it; where none does, it is cut if it is part
-            of a closed line, else ignored.
+        rules: the first one that matches an entity says what is done with it; where none does, it is cut.
+        open: what is done with chains that do not close, of entities that no rule matches.
         layers: patterns; where there are any, entities on other layers are ignored.
         ignored_layers: patterns; entities on these layers are ignored.
         joining: largest distance between ends that are joined, m.
         accept_loss: whether to go on where parts of a damaged file could not be read.
     """
 
-    rules: tuple[Rule, ...] = ()
+    rules: tuple[Rule, ...] = DEFAULT_RULES
+    open: Operation = Operation.IGNORE
     layers: tuple[str, ...] = ()
     ignored_layers: tuple[str, ...] = ()
     joining: float = DEFAULT_JOINING

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from deltacam.model.curve import Curve
+from deltacam.model.drawing import Operation
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,19 +21,27 @@ class Placement:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cut:
-    """One closed path of the beam's centre.
+    """One path of the beam's centre, cut or engraved.
 
     Attributes:
         contour: the number of the drawn contour.
         layer: of the drawn contour.
         handles: of the drawn contour.
-        curve: closed, in the sheet frame; it starts and ends at ``curve.points[0]``.
+        curve: in the sheet frame; it starts at ``curve.points[0]``, and ends there where it is closed, else at
+            ``curve.points[-1]``.
+        operation: cut or engrave.
     """
 
     contour: int
     layer: str
     handles: tuple[str, ...]
     curve: Curve
+    operation: Operation = Operation.CUT
+
+    @property
+    def where(self) -> str:
+        """How messages name it: ``contour 3 (layer CUT, #2F)``."""
+        return f"contour {self.contour} (layer {self.layer}, #{self.handles[0]})"
 
 
 class BlockKind(StrEnum):
@@ -43,6 +52,7 @@ class BlockKind(StrEnum):
     LEAD_IN = "lead_in"
     CUT = "cut"
     LEAD_OUT = "lead_out"
+    ENGRAVE = "engrave"
 
 
 class Mode(StrEnum):

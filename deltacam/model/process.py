@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from deltacam.model.drawing import DEFAULT_RULES, Operation, Rule
+
 Corner = Literal["round", "stop"]
 
 
@@ -25,6 +27,11 @@ class Process:
         chord_tolerance: how far the motion may leave the planned path between ticks, m, > 0.
         corner: whether sharp corners are rounded within the tolerance or stopped at.
         gas: for people.
+        rules: which lines of a drawing are cut, engraved or ignored; the first that matches counts, and what none
+            matches is cut.
+        open: what is done with lines that do not close and that no rule matches.
+        engrave_feed: speed while engraving, m/s, > 0; None where nothing is known about engraving.
+        engrave_power: 0 < power <= 1 of the laser's rated power while engraving; None likewise.
     """
 
     name: str
@@ -39,3 +46,7 @@ class Process:
     chord_tolerance: float = 20e-6
     corner: Corner = "round"
     gas: str = ""
+    rules: tuple[Rule, ...] = DEFAULT_RULES
+    open: Operation = Operation.IGNORE
+    engrave_feed: float | None = None
+    engrave_power: float | None = None

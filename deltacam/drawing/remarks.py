@@ -1,0 +1,121 @@
+"""What a person should know about the entities of a drawing, apart from how their lines meet."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+from deltacam.drawing.entities import Drawn, Entity
+from deltacam.geometry import curve as curves
+from deltacam.model import Contour, Finding, Layer, Operation
+from deltacam.units import to_mm
+
+_WORDS: Final = frozenset({"TEXT", "MTEXT", "DIMENSION", "LEADER", "MULTILEADER", "TOLERANCE", "ACAD_TABLE"})
+_MANY_WORDS: Final = 10
+"""Texts and dimensions from which on a file looks like a drawing for people."""
+
+_PAGES_MM: Final = {
+    "A5": (148.0, 210.0),
+    "A4": (210.0, 297.0),
+    "A3": (297.0, 420.0),
+    "A2": (420.0, 594.0),
+    "A1": (594.0, 841.0),
+    "A0": (841.0, 1189.0),
+    "letter": (215.9, 279.4),
+    "legal": (215.9, 355.6),
+    "tabloid": (279.4, 431.8),
+    "ANSI C": (431.8, 558.8),
+    "ANSI D": (558.8, 863.6),
+    "ANSI E": (863.6, 1117.6),
+}
+"""Sizes of paper (ISO 216, ANSI/ASME Y14.1), mm."""
+
+_PAGE_TOLERANCE_MM: Final = 1.0
+
+
+def hidden_layers(layers: Iterable[Layer]) -> list[Finding]:
+    """One finding per layer that is frozen or off and holds lines."""
+    return [
+        Finding(
+            f"the layer is {layer.state}, but its {counted(layer.curves, 'curve')} read like all others",
+            where=f"layer {layer.name}",
+            hint="leave it out with --ignore-layer if it is not to be cut",
+            kind="layer",
+        )
+        for layer in layers
+        if layer.state != "on" and layer.curves
+    ]
+
+
+def not_cut(found: Drawn) -> list[Finding]:
+    """One finding per kind and layer of entities that draw no line."""
+    left = [entity for entity in found.without_curve() if not entity.is_insert]
+    kinds: dict[tuple[str, str], list[Entity]] = {}
+    for entity in left:
+        kinds.setdefault((entity.kind, entity.reason), []).append(entity)
+    return [
+        Finding(f"{counted(len(those), kind)} not cut: {reason}", where=_layers(those), kind="not_cut")
+        for (kind, reason), those in kinds.items()
+    ]
+
+
+def paper_space(count: int) -> list[Finding]:
+    """The finding that entities in paper space were not read."""
+    if not count:
+        return []
+    what = f"{counted(count, 'entity', 'entities')} not read: in paper space"
+    return [Finding(what, hint="move what is to be cut to the modelspace", kind="paper_space")]
+
+
+def open_chains(chains: Sequence[Contour]) -> list[Finding]:
+    """One finding per layer that counts its open chains that are not machined."""
+    hint = "close them in the drawing if they are outlines, or map them to engrave or cut in the process"
+    return [
+        Finding(f"{counted(count, 'open chain')} not cut", where=f"layer {layer}", hint=hint, kind="open")
+        for layer, count in Counter(chain.layer for chain in chains if chain.operation is Operation.IGNORE).items()
+    ]
+
+
+def drawing_sheet(entities: Sequence[Entity], contours: Sequence[Contour]) -> list[Finding]:
+    """The findings that a file looks like a drawing for people: full of text, or with the frame of a page."""
+    hint = "leave frames and title blocks out with --ignore-layer, or save only what is to be cut"
+    findings = []
+    words = Counter(entity.kind for entity in entities if entity.kind in _WORDS)
+    if words.total() >= _MANY_WORDS:
+        held = ", ".join(f"{count} {kind}" for kind, count in words.most_common(3))
+        what = f"this looks like a drawing for people rather than a cut file: it holds {held}"
+        findings.append(Finding(what, hint=hint, kind="drawing_sheet"))
+    parents = {contour.parent for contour in contours}
+    for contour in contours:
+        if contour.depth or contour.number not in parents or len(contour.curve.points) != 4:
+            continue
+        left, bottom, right, top = curves.bounds(contour.curve)
+        page = _page(to_mm(right - left), to_mm(top - bottom))
+        if page:
+            what = f"it has the size of a page ({page}) and lies around other contours: is it a frame?"
+            findings.append(Finding(what, where=contour.where, hint=hint, kind="drawing_sheet"))
+    return findings
+
+
+def counted(count: int, one: str, many: str = "", *, verb: bool = True) -> str:
+    """A count with its noun, and is or are: ``2 curves are``."""
+    noun = one if count == 1 else many or (one if one.isupper() else f"{one}s")
+    return f"{count} {noun}{(' is' if count == 1 else ' are') if verb else ''}"
+
+
+def _layers(entities: Sequence[Entity]) -> str:
+    """Where some entities are: the layer and handle of the first, and the other layers."""
+    names = list(dict.fromkeys(entity.layer for entity in entities))
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    handle = f", #{entities[0].handle}" if len(entities) == 1 else ""
+    return f"layer {', '.join(names[:3])}{more}{handle}"
+
+
+def _page(width: float, height: float) -> str:
+    """The name of the paper size, mm, lying or standing; empty where it is none."""
+    short, long = sorted((width, height))
+    for name, (low, high) in _PAGES_MM.items():
+        if abs(short - low) <= _PAGE_TOLERANCE_MM and abs(long - high) <= _PAGE_TOLERANCE_MM:
+            return name
+    return ""
