@@ -19,7 +19,7 @@ from deltacam.cutting import kerf, order, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
 from deltacam.drawing.reader import read_drawing
 from deltacam.errors import ProgramError
-from deltacam.model import Cut, Drawing, Finding, Mode, Placement, Process, Report
+from deltacam.model import EVERYTHING, Cut, Drawing, Finding, Mode, Placement, Process, Report, Selection
 from deltacam.motion import setpoints
 from deltacam.program import csv
 from deltacam.program.atomic import replace_when_done, write_whole
@@ -98,6 +98,7 @@ def plan(
     process: Process | str | Path = DEFAULT_PROCESS,
     unit: str | None = None,
     default_unit: str | None = None,
+    selection: Selection = EVERYTHING,
     at: tuple[float, float] = (0.0, 0.0),
     rotation: float = 0.0,
     mode: Mode = Mode.CUT,
@@ -111,6 +112,7 @@ def plan(
         process: a process, a built-in name, or the path of a process file.
         unit: what the drawing's numbers are, where the file does not say or is wrong: "mm", "in", ...
         default_unit: what they are where neither the file nor ``unit`` says.
+        selection: which layers count, and how far apart ends may be; the rules are those of the process.
         at: where the centre of what is cut comes to lie, base frame, m.
         rotation: of the drawing about that centre, rad, counter-clockwise.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
@@ -125,7 +127,8 @@ def plan(
     robot = robot if isinstance(robot, Robot) else load_robot(robot)
     process = check_process(process if isinstance(process, Process) else load_process(process))
     progress("read", 0, 1)
-    part = read_drawing(drawing, unit=unit, default_unit=default_unit)
+    selection = replace(selection, rules=process.rules, open=process.open)
+    part = read_drawing(drawing, unit=unit, default_unit=default_unit, selection=selection)
     program, findings = _program(part, robot, process, at, rotation, mode, progress)
     progress("write", 0, 1)
     content = _content(program)

@@ -16,9 +16,7 @@ from deltacam.drawing import document, entities, operations, remarks, scale
 from deltacam.drawing.assemble import Assembled, assemble
 from deltacam.drawing.entities import Drawn
 from deltacam.errors import DrawingError
-from deltacam.model import Drawing, Finding, LedgerEntry, Operation, Outcome, Selection
-
-_EVERYTHING = Selection()
+from deltacam.model import EVERYTHING, Drawing, Finding, LedgerEntry, Operation, Outcome, Selection
 
 
 def read_drawing(
@@ -27,7 +25,7 @@ def read_drawing(
     unit: str | None = None,
     metres_per_unit: float | None = None,
     default_unit: str | None = None,
-    selection: Selection = _EVERYTHING,
+    selection: Selection = EVERYTHING,
     strict: bool = True,
 ) -> Drawing:
     """The contours of a DXF file's modelspace, and what became of every entity.

@@ -8,6 +8,7 @@ from deltacam.model.curve import STRAIGHT, Curve
 from deltacam.model.drawing import (
     DEFAULT_JOINING,
     DEFAULT_RULES,
+    EVERYTHING,
     Contour,
     Drawing,
     Layer,
@@ -24,6 +25,7 @@ from deltacam.model.report import Check, Report
 __all__ = [
     "DEFAULT_JOINING",
     "DEFAULT_RULES",
+    "EVERYTHING",
     "STRAIGHT",
     "Array",
     "Block",

@@ -79,6 +79,10 @@ class Selection:
     accept_loss: bool = False
 
 
+EVERYTHING: Final = Selection()
+"""All layers, by the default rules."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Contour:
     """One closed line of the drawing, or one chain of lines that does not close.
@@ -170,7 +174,7 @@ class Drawing:
     ignored: tuple[Contour, ...] = ()
     layers: tuple[Layer, ...] = ()
     extents: tuple[float, float, float, float] | None = None
-    selection: Selection = Selection()
+    selection: Selection = EVERYTHING
 
     @property
     def unit_in_words(self) -> str:
