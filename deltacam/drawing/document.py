@@ -1,51 +1,100 @@
-"""The bytes of a file to an ezdxf document, or one clear sentence that says why not.
+"""The bytes of a file to an ezdxf document, with what was lost on the way, or one clear sentence that says why not.
 
-Two readers are tried: ezdxf's plain one, then ``ezdxf.recover`` for files with a damaged structure. What recover
-reports as changed or lost geometry is an error here: it can read 2,5 as 2.0 and carry on.
+Three readers are tried: ezdxf's plain one, ``ezdxf.recover`` for files with a damaged structure, and our own tolerant
+one. A reader's document is taken only if it holds every entity of the file unchanged; the tolerant reader, the last,
+says itself what it could not read. ezdxf's recovery can read 2,5 as 2.0 and carry on, and it removes entities.
 """
 
 from __future__ import annotations
 
 import io
 import logging
+import re
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from ezdxf import filemanagement, recover
-from ezdxf.audit import AuditError, Auditor
 from ezdxf.document import Drawing as Document
 from ezdxf.lldxf.tagger import binary_tags_loader
+from ezdxf.tools.codepage import toencoding
 
+from deltacam.drawing import census, formats, tags
+from deltacam.drawing.repair import Repaired, repair
+from deltacam.drawing.tags import Groups
 from deltacam.errors import DeltacamError, DrawingError
+from deltacam.model import Finding, LedgerEntry
 
 MAX_BYTES: Final = 256 * 2**20
 """Larger files are refused before they are read."""
 
-_SENTINEL: Final = b"AutoCAD Binary DXF\r\n\x1a\x00"
-_OTHER_FORMATS: Final = {
-    b"%PDF": "a PDF",
-    b"%!PS": "a PostScript file",
-    b"AC10": "a DWG file",
-    b"<svg": "an SVG or XML file",
-    b"<?xml": "an SVG or XML file",
-    b"<!DOCTYPE": "a web page",
-    b"<html": "a web page",
-    b"PK\x03\x04": "a ZIP archive",
-    b"\x89PNG": "a PNG image",
-    b"\xff\xd8\xff": "a JPEG image",
-    b"version https://git-lfs": "a Git LFS pointer, not the file itself",
-}
-_GEOMETRY_LOST: Final = {
-    int(AuditError.REMOVED_INVALID_GRAPHIC_ENTITY): "an entity would have to be left out",
-    int(AuditError.UNDEFINED_BLOCK): "a block that is inserted is not in the file",
-    int(AuditError.INVALID_FLOATING_POINT_VALUE): "a coordinate is not a number with a decimal point",
-}
+MAX_GROUPS: Final = 3_000_000
+"""Files with more entities, layers, vertices and so on are refused before ezdxf makes an object of each."""
+
+_GROUP_BYTES: Final = 1000
+"""What an object of ezdxf takes in memory, about."""
+
+_MEMORY_FACTOR, _MEMORY_FIXED = 30, 512 * 2**20
+"""Files that would need more bytes than this times their size, and this, are refused."""
+
+_MAX_RECOVERED: Final = 100_000
+"""Damaged files with more groups go to the tolerant reader at once: ezdxf's recovery can take quadratic time."""
+
+_HARMLESS: Final = frozenset(
+    (
+        1,
+        2,
+        3,
+        4,
+        5,
+        7,
+        9,
+        10,
+        12,
+        14,
+        *range(100, 103),
+        *range(105, 108),
+        *range(110, 115),
+        118,
+        202,
+        *range(204, 208),
+        213,
+        223,
+    )
+)
+"""What ezdxf's audit may mend without a change of what is drawn: names, owners, colours, dictionaries, ...
+
+Not among them: 117, a coordinate that is no number; 11 and 103, an entity that is removed; 116, a whole number that is
+none. That no entity was removed is seen by counting.
+"""
+
 _SAVE_AGAIN: Final = "open it in a CAD program and save it again as DXF (ASCII, R2000 or newer)"
+_EXPORT_AGAIN: Final = "copy or export the drawing again"
+_INCOMPLETE: Final = "entities lie outside of the sections for entities, are doubled or lack coordinates"
+_MOST_REASONS: Final = 20
 
 # ezdxf reports through logging; without a handler Python would print its warnings on the terminal.
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loaded:
+    """What was read from a file.
+
+    Attributes:
+        document: of ezdxf.
+        reader: plain, recover or tolerant.
+        lost: the entities that could not be read.
+        findings: what a person should know; those about lost entities block.
+    """
+
+    document: Document
+    reader: str
+    lost: tuple[LedgerEntry, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
 
 def read_bytes(path: Path) -> bytes:
@@ -74,7 +123,7 @@ def read_bytes(path: Path) -> bytes:
     return data
 
 
-def load(data: bytes, file: str) -> Document:
+def load(data: bytes, file: str) -> Loaded:
     """The document in the bytes.
 
     Args:
@@ -82,20 +131,22 @@ def load(data: bytes, file: str) -> Document:
         file: its name, for messages.
 
     Raises:
-        DrawingError: no DXF, damaged, cut off, or readable only with a loss of geometry.
+        DrawingError: no DXF, absurdly large, damaged beyond use, or written with decimal commas.
     """
-    data = data.removeprefix(b"\xef\xbb\xbf")
-    head = data[:64].lstrip()
-    for magic, what in _OTHER_FORMATS.items():
-        if head.startswith(magic):
-            raise DrawingError(f"this is {what}, not a DXF file", where=file, hint="export the drawing as DXF")
-    if head.startswith(_SENTINEL[:18]) and not data.startswith(_SENTINEL):
-        what = "a binary DXF file whose first line is damaged (line ends were converted)"
-        raise DrawingError(what, where=file, hint="copy it again as binary, or export it as ASCII DXF")
+    formats.refuse_others(data, file)
+    if data.startswith(formats.SENTINEL):
+        return _load_binary(data, file)
+    groups = tags.split(data)
+    _refuse_absurd(groups, len(data), file)
+    reason: object = _INCOMPLETE
     try:
-        return _read_plain(data)
+        document = _read_plain(data.removeprefix(b"\xef\xbb\xbf"))
+        if census.is_complete(document, groups):
+            return Loaded(document, "plain")
+        del document
     except Exception as error:  # noqa: BLE001  # ezdxf raises whatever a damaged file makes it stumble over
-        return _recover(data, file, error)
+        reason = error
+    return _recover(groups, reason) or _tolerate(tags.split(_in_utf8(data)), file, reason)
 
 
 @contextmanager
@@ -109,44 +160,122 @@ def translated(where: str, kind: type[Exception] = Exception) -> Iterator[None]:
         raise DrawingError(f"the entity is damaged: {_one_line(error)}", where=where, hint=_SAVE_AGAIN) from error
 
 
+def _load_binary(data: bytes, file: str) -> Loaded:
+    """A binary file; whatever of it is incomplete goes to the tolerant reader as text."""
+    try:
+        groups = tags.split(tags.from_binary(binary_tags_loader(data, errors="surrogateescape")))
+        _refuse_absurd(groups, len(data), file)
+        document = Document.load(binary_tags_loader(data, errors="surrogateescape"))
+    except DrawingError:
+        raise
+    except Exception as error:
+        what = f"a binary DXF file that is damaged or cut off: {_one_line(error)}"
+        raise DrawingError(what, where=file, hint="copy it again as binary, or export it as ASCII DXF") from error
+    if census.is_complete(document, groups):
+        return Loaded(document, "plain")
+    return _tolerate(groups, file, _INCOMPLETE)
+
+
+def _refuse_absurd(groups: Groups, size: int, file: str) -> None:
+    """Raises where ezdxf would take absurdly much memory."""
+    count = len(groups)
+    if count > MAX_GROUPS:
+        what = f"the file is too large: {count} entities and other objects are more than {MAX_GROUPS}"
+        raise DrawingError(what, where=file, hint="save only what is to be cut")
+    if count * _GROUP_BYTES > _MEMORY_FACTOR * size + _MEMORY_FIXED:
+        what = f"this is no drawing: it lists {count} objects in {size / 2**20:.3g} MB, nearly all without content"
+        raise DrawingError(what, where=file, hint=_EXPORT_AGAIN)
+
+
 def _read_plain(data: bytes) -> Document:
     """What ``ezdxf.readfile`` does, on bytes."""
-    if data.startswith(_SENTINEL):
-        return Document.load(binary_tags_loader(data, errors="surrogateescape"))
     info = filemanagement.dxf_stream_info(io.TextIOWrapper(io.BytesIO(data), encoding="utf-8", errors="ignore"))
     return filemanagement.read(io.TextIOWrapper(io.BytesIO(data), encoding=info.encoding, errors="surrogateescape"))
 
 
-def _recover(data: bytes, file: str, reason: Exception) -> Document:
-    """What ``ezdxf.recover`` makes of a file that the plain reader refused for ``reason``."""
-    if data.startswith(_SENTINEL):
-        what = f"a binary DXF file that is damaged or cut off: {_one_line(reason)}"
-        raise DrawingError(what, where=file, hint="copy it again as binary, or export it as ASCII DXF") from reason
-    if b"SECTION" not in data:
-        raise DrawingError("this is not a DXF file", where=file, hint="export the drawing as DXF") from reason
-    entities = data.rfind(b"ENTITIES")
-    if not data.rstrip().endswith(b"EOF") and data.find(b"ENDSEC", max(entities, 0)) < 0:
-        what = "the file is cut off before the end of its entities"
-        raise DrawingError(what, where=file, hint="copy or export it again") from reason
+def _recover(groups: Groups, reason: object) -> Loaded | None:
+    """What ``ezdxf.recover`` makes of a file, if that is all of it and unchanged."""
+    if len(groups) > _MAX_RECOVERED or not census.is_ordered(groups):
+        return None
     try:
-        document, auditor = recover.read(io.BytesIO(data))
-    except Exception as error:
-        raise DrawingError(f"the file is damaged: {_one_line(error)}", where=file, hint=_SAVE_AGAIN) from error
-    _refuse_losses(auditor, file)
-    if not len(document.modelspace()):
-        raise DrawingError(f"the file is damaged: {_one_line(reason)}", where=file, hint=_SAVE_AGAIN) from reason
-    return document
+        document, auditor = recover.read(io.BytesIO(groups.text))
+    except Exception:  # noqa: BLE001  # the tolerant reader says what is wrong
+        return None
+    mended = {int(entry.code) for entry in (*auditor.errors, *auditor.fixes)}
+    if not (mended <= _HARMLESS and len(document.modelspace()) and census.is_complete(document, groups)):
+        return None
+    return Loaded(document, "recover", findings=(_recovered(_one_line(reason)),))
 
 
-def _refuse_losses(auditor: Auditor, file: str) -> None:
-    """Raises where recovery changed or dropped geometry; names and handles do not matter."""
-    for entry in (*auditor.errors, *auditor.fixes):
-        if int(entry.code) in _GEOMETRY_LOST:
-            what = f"the file is damaged: {_GEOMETRY_LOST[int(entry.code)]}"
-            raise DrawingError(f"{what} ({_one_line(entry.message)})", where=file, hint=_SAVE_AGAIN)
+def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
+    """What our own reader makes of a file."""
+    if not census.DRAWN.union(("SECTION",)).intersection(groups.kinds):
+        raise DrawingError("this is not a DXF file", where=file, hint="export the drawing as DXF")
+    for bare in (False, True):
+        repaired = repair(groups, file, bare=bare)
+        _refuse_empty(repaired, file, reason)
+        try:
+            document = filemanagement.read(io.StringIO(repaired.text))
+        except Exception as error:
+            if bare:
+                raise DrawingError(f"the file is damaged: {_one_line(error)}", where=file, hint=_SAVE_AGAIN) from error
+            continue
+        break
+    if not census.is_complete(document, tags.split(repaired.text.encode("utf-8", "surrogateescape"))):
+        raise DrawingError(f"the file is damaged: {_one_line(reason)}", where=file, hint=_SAVE_AGAIN)
+    how = ", ".join(repaired.repairs) or _one_line(reason)
+    return Loaded(document, "tolerant", repaired.lost, (*_lost(repaired), _recovered(how)))
+
+
+def _refuse_empty(repaired: Repaired, file: str, reason: object) -> None:
+    """Raises where nothing that can be cut is left of a damaged file."""
+    if census.DRAWN.intersection(kind for kind, count in repaired.kept.items() if count):
+        return
+    if not repaired.lost and repaired.cut_off:
+        raise DrawingError("the file is cut off before its first entity", where=file, hint=_EXPORT_AGAIN)
+    what = f"the file is damaged: {_one_line(reason)}"
+    if repaired.lost:
+        what = f"the file is damaged: none of its {len(repaired.lost)} entities can be read: {repaired.lost[0].reason}"
+    raise DrawingError(what, where=file, hint=_SAVE_AGAIN)
+
+
+def _lost(repaired: Repaired) -> Iterator[Finding]:
+    """What is not in the document, counted by kind and reason."""
+    if repaired.cut_off:
+        what = "the file has no end: nobody knows what it held after the last entity that was read"
+        yield Finding(what, hint=_EXPORT_AGAIN, kind="lost", blocks=True)
+    counts = Counter((entry.kind, entry.reason) for entry in repaired.lost).most_common()
+    for (kind, reason), count in counts[:_MOST_REASONS]:
+        what = f"{count} {kind} could not be read: {reason}"
+        yield Finding(what, hint=_SAVE_AGAIN, kind="lost", blocks=True)
+    more = sum(count for _, count in counts[_MOST_REASONS:])
+    if more:
+        what = f"{more} more entities could not be read"
+        yield Finding(what, hint=_SAVE_AGAIN, kind="lost", blocks=True)
+
+
+def _recovered(how: str) -> Finding:
+    """The finding about a file that had to be repaired."""
+    return Finding(
+        f"the file does not follow the DXF format and was repaired: {how}", hint=_SAVE_AGAIN, kind="recovered"
+    )
+
+
+def _in_utf8(data: bytes) -> bytes:
+    """The bytes as UTF-8; from the code page that the file states where they are none."""
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+            return data
+        page = re.search(rb"\$DWGCODEPAGE\s+3\s+(\w+)", data)
+        encoding = toencoding(page[1].decode("ascii")) if page else "cp1252"
+        return data.decode(encoding, "surrogateescape").encode("utf-8", "surrogateescape")
+    return data
 
 
 def _one_line(error: object) -> str:
     """The first line of a foreign message, without its own prefix and full stop."""
     text = next(iter(str(error).splitlines()), "") or type(error).__name__
-    return text.removeprefix("DXFStructureError: ").rstrip(". ")[:160]
+    text = text.removeprefix("DXFStructureError: ").rstrip(". ")[:160]
+    return "".join(character if character.isprintable() else "?" for character in text)

@@ -47,7 +47,8 @@ def read_drawing(
     """
     path = Path(path)
     data = document.read_bytes(path)
-    source = document.load(data, path.name)
+    loaded = document.load(data, path.name)
+    source = loaded.document
     header = scale.read_header(source, data)
     chosen = scale.choose(header, unit=unit, metres_per_unit=metres_per_unit, default=default_unit)
     found = entities.read(source, chosen.metres)
@@ -58,6 +59,7 @@ def read_drawing(
     joined = assemble(found, operations.assign(found.entities, selection), selection.joining)
     extents = _extents(found)
     findings = [
+        *loaded.findings,
         *scale.findings(chosen, (extents[2] - extents[0], extents[3] - extents[1]), header),
         *joined.findings,
         *_nothing_to_machine(found, joined),

@@ -1,0 +1,108 @@
+"""Whether a document holds every entity that the file holds.
+
+ezdxf leaves out in silence what it finds in a place where it does not look: outside of sections, in a section that
+comes twice, in a block that has no end. So the entities are counted in the file itself, and then in the document.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any, Final
+
+import numpy as np
+
+from deltacam.drawing.tags import Groups
+
+DRAWN: Final = frozenset(("LINE", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "VERTEX", "SPLINE", "INSERT"))
+"""Kinds that draw something which can be cut, or are part of such."""
+
+STRUCTURE: Final = frozenset(("SECTION", "ENDSEC", "EOF", "TABLE", "ENDTAB", "BLOCK", "ENDBLK", "SEQEND", "CLASS"))
+TABLES: Final = frozenset(
+    ("APPID", "BLOCK_RECORD", "DIMSTYLE", "LAYER", "LTYPE", "STYLE", "UCS", "VIEW", "VPORT", "DICTIONARY")
+)
+_ELSEWHERE: Final = frozenset(("HEADER", "CLASSES", "TABLES", "OBJECTS", "ACDSDATA", "THUMBNAILIMAGE"))
+"""Sections without entities."""
+
+_REARRANGED: Final = frozenset(("MTEXT", "VIEWPORT"))
+"""Kinds that ezdxf merges or adds for good reasons; neither draws a line."""
+
+_NEEDED: Final = {
+    "LINE": ("start", "end"),
+    "CIRCLE": ("center", "radius"),
+    "ARC": ("center", "radius", "start_angle", "end_angle"),
+    "ELLIPSE": ("center", "major_axis", "ratio"),
+    "INSERT": ("name", "insert"),
+    "VERTEX": ("location",),
+}
+"""Attributes for which ezdxf puts in a value of its own where the file has none."""
+
+
+def entities(groups: Groups) -> Iterator[int]:
+    """The indices of the groups that are entities, wherever in the file they are."""
+    section = ""
+    for i, kind in enumerate(groups.kinds):
+        if kind == "SECTION":
+            section = groups.group(i).first(2).decode("ascii", "replace").upper()
+        elif kind in ("ENDSEC", "EOF"):
+            section = ""
+        elif kind in DRAWN or not (section in _ELSEWHERE or kind in STRUCTURE or kind in TABLES):
+            yield i
+
+
+def is_complete(document: Any, groups: Groups) -> bool:
+    """Whether the document holds every entity of the file, each with all that it needs."""
+    blocks = [_name(groups, i) for i, kind in enumerate(groups.kinds) if kind == "BLOCK"]
+    if len(set(blocks)) < len(blocks):
+        return False  # ezdxf draws the one over the other
+    expected = Counter(groups.kinds[i] for i in entities(groups))
+    held: Counter[str] = Counter()
+    known = {*blocks, "*model_space", "*paper_space"}
+    for block in document.blocks:
+        if str(block.name).casefold() not in known:
+            continue  # ezdxf adds arrow heads to old files
+        for entity in _with_parts(block):
+            kind = entity.dxftype()
+            held[kind] += 1
+            if not _has_all(entity, kind):
+                return False
+    return all(held[kind] >= count for kind, count in expected.items() if kind not in _REARRANGED)
+
+
+def is_ordered(groups: Groups) -> bool:
+    """Whether ezdxf's recovery finds each coordinate where it looks for it; what it does not find it drops."""
+    if not groups.paired:
+        return False
+    codes = groups.codes()
+    x = np.isin(codes, (10, 11, 12, 13, 210))
+    y = np.isin(codes, (20, 21, 22, 23, 220))
+    lone = (x[:-1] & ~y[1:]) | (y[1:] & ~x[:-1])
+    of = np.searchsorted(groups.heads, 2 * np.flatnonzero(lone), side="right") - 1
+    # Recovery puts the coordinates of a LINE in order.
+    return all(groups.kinds[i] not in DRAWN or groups.kinds[i] == "LINE" for i in set(of.tolist()))
+
+
+def _name(groups: Groups, index: int) -> str:
+    return groups.group(index).first(2).decode("utf-8", "replace").casefold()
+
+
+def _with_parts(block: Any) -> Iterator[Any]:
+    """The entities of a layout or block, with the vertices of polylines and the attributes of INSERTs."""
+    for entity in block:
+        yield entity
+        kind = entity.dxftype()
+        if kind == "POLYLINE":
+            yield from entity.vertices
+        elif kind == "INSERT":
+            yield from entity.attribs
+
+
+def _has_all(entity: Any, kind: str) -> bool:
+    """Whether the file gives what makes the shape of an entity."""
+    if kind == "LWPOLYLINE":
+        return len(entity) > 0
+    if kind == "SPLINE":
+        return len(entity.control_points) > 0 or len(entity.fit_points) > 0
+    # The vertices that are the faces of a mesh have no location.
+    has = entity.dxf.hasattr
+    return all(has(name) for name in _NEEDED.get(kind, ())) or (kind == "VERTEX" and bool(entity.dxf.flags & 128))
