@@ -6,6 +6,7 @@ import difflib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fnmatch import translate
 from functools import lru_cache
 from typing import Final, NamedTuple, Protocol
 
@@ -121,10 +122,9 @@ def matches(pattern: str, name: str) -> bool:
 
 @lru_cache(maxsize=1024)
 def _compiled(pattern: str) -> re.Pattern[str]:
-    parts = [re.escape(part.strip()) for part in pattern.casefold().split(",")]
-    # Stars in a row mean one, and without backtracking no pattern is slow.
-    wild = [re.sub(r"(\\\*)+", ".*", part).replace(r"\?", ".") for part in parts]
-    return re.compile("|".join(wild), flags=re.DOTALL)
+    # A bracket means itself; for fnmatch it would begin a set of characters.
+    parts = [part.strip().replace("[", "[[]") for part in pattern.casefold().split(",")]
+    return re.compile("|".join(f"(?:{translate(part)})" for part in parts))
 
 
 def _parts(pattern: str, layers: Sequence[str]) -> list[str]:
