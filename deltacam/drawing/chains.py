@@ -1,133 +1,187 @@
 """Open curves that meet at nodes, as chains and closed loops, without a guess where more than two meet.
 
-A dead end is on no loop, so dead ends are set aside first. A chain that comes back to the node it left is a loop and is
-taken out, which may make its node simple for what remains. What still runs between nodes with more than two curves
-could be closed in several ways and is left open.
+A dead end is on no loop, so dead ends are set aside. A chain that comes back to the node it left is a loop and is taken
+out. Either may make its node simple for what remains. What still runs between nodes with more than two curves could be
+closed in several ways and is left open.
+
+A step of a chain is one number: twice the index of the curve, plus 1 where it is run backwards; so it is also the
+number of the end where the step begins, and ``step ^ 1`` that of the end where it arrives.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
 from deltacam.drawing.nodes import Nodes
 from deltacam.model import BoolArray, IntArray
 
-_ROUNDS: Final = 200
-"""Loops that hang on loops are taken out layer by layer, at most so many; what is left counts as ambiguous."""
-
-Step = tuple[int, bool]
-"""A curve, and whether it is run backwards."""
+Steps = list[int]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Chains:
-    """What the curves form.
+    """What the curves form, each in the order of the first curve.
 
     Attributes:
-        loops: closed, each starting with its first curve in the order of the file.
+        loops: closed, each starting with its first curve in the order of the file, run forwards.
         open: chains that end at a dead end or at a node where more than two curves meet.
         ambiguous: chains between such nodes; they could be closed in more than one way.
         branches: the nodes where more than two curves meet.
     """
 
-    loops: list[list[Step]]
-    open: list[list[Step]]
-    ambiguous: list[list[Step]]
-    branches: list[int]
+    loops: list[Steps]
+    open: list[Steps]
+    ambiguous: list[Steps]
+    branches: IntArray
 
 
 def trace(nodes: Nodes) -> Chains:
     """The chains and loops that the curves of ``nodes`` form; every curve but the specks is in exactly one."""
-    labels = nodes.labels
-    present = ~nodes.specks
-    degree = _degrees(labels, present, len(nodes.places))
-    core, looped = present, np.zeros(len(labels), dtype=np.bool_)
-    loops: list[list[Step]] = []
-    rest: list[list[Step]] = []
-    for _ in range(_ROUNDS):
-        core = _without_dead_ends(labels, core, _degrees(labels, core, len(degree)))
-        found, rest = _walk(labels, core, _degrees(labels, core, len(degree)))
-        if not found:
-            break
-        loops += found
-        looped[[curve for loop in found for curve, _ in loop]] = True
-        core &= ~looped
-    loops.sort(key=lambda loop: loop[0][0])
-    _, open_chains = _walk(labels, present & ~core & ~looped, degree)
-    return Chains(loops, open_chains, rest, [int(node) for node in np.flatnonzero(degree > 2)])
+    node_of = nodes.labels.reshape(-1)
+    present = np.repeat(~nodes.specks, 2)
+    degree = np.bincount(node_of[present], minlength=len(nodes.places))
+    loops, strings = walk(_partners(node_of, present, degree), np.flatnonzero(present[::2]).tolist())
+    web = _Web(strings, node_of)
+    web.simplify()
+    loops += web.loops
+    loops.sort(key=lambda loop: loop[0])
+    return Chains(loops, web.dead(), web.rest(), np.flatnonzero(degree > 2))
 
 
-def _degrees(labels: IntArray, members: BoolArray, count: int) -> IntArray:
-    """How many ends of the members meet at each of ``count`` nodes."""
-    return np.bincount(labels[members].ravel(), minlength=count).astype(np.int64)
+def _partners(node_of: IntArray, present: BoolArray, degree: IntArray) -> list[int]:
+    """For each end the one that it meets at a node with just two; -1 at other nodes."""
+    paired = np.flatnonzero(present & (degree[node_of] == 2))
+    by_node = paired[np.argsort(node_of[paired], kind="stable")].reshape(-1, 2)
+    partner = np.full(len(node_of), -1, dtype=np.int64)
+    partner[by_node[:, 0]], partner[by_node[:, 1]] = by_node[:, 1], by_node[:, 0]
+    found: list[int] = partner.tolist()
+    return found
 
 
-def _without_dead_ends(labels: IntArray, present: BoolArray, degree: IntArray) -> BoolArray:
-    """The curves that remain when those with an end that meets nothing are taken away, again and again."""
-    core = present.copy()
-    at = _curves_at(labels, present)
-    waiting = [int(node) for node in np.flatnonzero(degree == 1)]
-    while waiting:
-        for curve in at[waiting.pop()]:
-            if core[curve]:
-                core[curve] = False
-                degree[labels[curve]] -= 1
-                waiting += [int(end) for end in labels[curve] if degree[end] == 1]
-    return core
-
-
-def _walk(labels: IntArray, members: BoolArray, degree: IntArray) -> tuple[list[list[Step]], list[list[Step]]]:
-    """Loops and other chains of the members; a chain runs on through nodes of degree 2 only.
+def walk(partner: list[int], wanted: Iterable[int]) -> tuple[list[Steps], list[Steps]]:
+    """Closed and open runs of curves whose ends are paired; each has its first curve run forwards.
 
     Args:
-        labels: (M, 2) nodes.
-        members: (M,) the curves to walk.
-        degree: how many ends meet at each node.
+        partner: for each end the end that it meets, or -1.
+        wanted: the curves, in order.
+
+    Returns:
+        the closed runs, which start with their first curve, and the open ones.
     """
-    at = _curves_at(labels, members)
-    fresh = members.copy()
-    loops, chains = [], []
-    for first in np.flatnonzero(members):
-        if not fresh[first]:
+    fresh = bytearray(b"\1") * (len(partner) // 2)
+    closed, opened = [], []
+    for curve in wanted:
+        if not fresh[curve]:
             continue
-        fresh[first] = False
-        chain: list[Step] = [(int(first), False)]
-        chain += _ahead(int(labels[first, 1]), labels, at, fresh, degree)
-        back = _ahead(int(labels[first, 0]), labels, at, fresh, degree)
-        if _end(labels, back[-1] if back else (int(first), True)) == _end(labels, chain[-1]):
-            loops.append(chain + [(curve, not turned) for curve, turned in reversed(back)])
-        else:
-            chains.append([(curve, not turned) for curve, turned in reversed(back)] + chain)
-    return loops, chains
+        fresh[curve] = 0
+        steps = [2 * curve]
+        following = partner[2 * curve + 1]
+        while following >= 0 and fresh[following >> 1]:
+            fresh[following >> 1] = 0
+            steps.append(following)
+            following = partner[following ^ 1]
+        if following == 2 * curve:
+            closed.append(steps)
+            continue
+        back = []
+        before = partner[2 * curve]
+        while before >= 0:
+            fresh[before >> 1] = 0
+            back.append(before ^ 1)
+            before = partner[before ^ 1]
+        opened.append(back[::-1] + steps)
+    return closed, opened
 
 
-def _ahead(node: int, labels: IntArray, at: dict[int, list[int]], fresh: BoolArray, degree: IntArray) -> list[Step]:
-    """The curves from ``node`` on until one cannot go on; marks them as no longer fresh."""
-    steps: list[Step] = []
-    while degree[node] == 2:
-        following = next((curve for curve in at[node] if fresh[curve]), None)
-        if following is None:
-            break
-        fresh[following] = False
-        turned = bool(labels[following, 0] != node)
-        steps.append((following, turned))
-        node = int(labels[following, 0 if turned else 1])
-    return steps
+class _Web:
+    """Strings of curves between nodes, simplified until every node left has more than two.
+
+    String s has the ends 2 s and 2 s + 1. Strings that come to meet alone at a node are linked to a path.
+    """
+
+    def __init__(self, strings: list[Steps], node_of: IntArray) -> None:
+        self.strings = strings
+        self.loops: list[Steps] = []
+        self._far = [end ^ 1 for end in range(2 * len(strings))]  # the other end of the path that begins at an end
+        self._link = [-1] * (2 * len(strings))
+        self._dead: list[int] = []
+        self._node = [int(node_of[end]) for steps in strings for end in (steps[0], steps[-1] ^ 1)]
+        self._at: dict[int, dict[int, None]] = {}
+        for end, node in enumerate(self._node):
+            self._at.setdefault(node, {})[end] = None
+
+    def simplify(self) -> None:
+        """Takes out dead ends and loops, and links what then meets alone, until nothing changes."""
+        for end in range(0, len(self._node), 2):
+            if self._node[end] == self._node[end + 1]:
+                self._take_loop(end)
+        waiting = list(self._at)
+        while waiting:
+            ends = list(self._at[waiting.pop()])
+            if len(ends) == 1:
+                waiting.append(self._drop(ends[0]))
+            elif len(ends) == 2:
+                waiting += self._join(*ends)
+
+    def dead(self) -> list[Steps]:
+        """The strings that lead to a dead end."""
+        return [self.strings[string] for string in sorted(self._dead)]
+
+    def rest(self) -> list[Steps]:
+        """The paths that are left between nodes."""
+        paths = []
+        for ends in self._at.values():
+            paths += [_forwards(self._steps(end)) for end in ends if end <= self._far[end]]
+        return sorted(paths, key=min)
+
+    def _steps(self, end: int) -> Steps:
+        """The steps of the path that begins at an end."""
+        steps: Steps = []
+        while end >= 0:
+            string = self.strings[end >> 1]
+            steps += [step ^ 1 for step in reversed(string)] if end & 1 else string
+            end = self._link[end ^ 1]
+        return steps
+
+    def _take_loop(self, end: int) -> None:
+        """Takes out the path that begins and ends at the node of an end."""
+        del self._at[self._node[end]][end], self._at[self._node[end]][self._far[end]]
+        self.loops.append(_from_first(self._steps(end)))
+
+    def _drop(self, end: int) -> int:
+        """Sets aside the path that begins at a dead end; returns the node where it arrives."""
+        far = self._far[end]
+        del self._at[self._node[end]][end], self._at[self._node[far]][far]
+        while end >= 0:
+            self._dead.append(end >> 1)
+            end = self._link[end ^ 1]
+        return self._node[far]
+
+    def _join(self, one: int, other: int) -> list[int]:
+        """Links the only two paths at a node; returns the nodes where that changes something."""
+        del self._at[self._node[one]][one], self._at[self._node[other]][other]
+        start, stop = self._far[one], self._far[other]
+        self._link[one], self._link[other] = other, one
+        self._far[start], self._far[stop] = stop, start
+        if self._node[start] != self._node[stop]:
+            return []
+        self._take_loop(start)
+        return [self._node[start]]
 
 
-def _end(labels: IntArray, step: Step) -> int:
-    """The node that a step arrives at."""
-    curve, turned = step
-    return int(labels[curve, 0 if turned else 1])
+def _from_first(loop: Steps) -> Steps:
+    """The same loop from its first curve on, run forwards."""
+    at = min(range(len(loop)), key=lambda i: loop[i] >> 1)
+    if loop[at] & 1:
+        loop = [step ^ 1 for step in reversed(loop)]
+        at = len(loop) - 1 - at
+    return loop[at:] + loop[:at]
 
 
-def _curves_at(labels: IntArray, members: BoolArray) -> dict[int, list[int]]:
-    """The members at each node, in the order of the file."""
-    at: dict[int, list[int]] = {}
-    for curve in np.flatnonzero(members):
-        for node in dict.fromkeys(labels[curve].tolist()):
-            at.setdefault(node, []).append(int(curve))
-    return at
+def _forwards(chain: Steps) -> Steps:
+    """The same chain in the direction in which its first curve is run forwards."""
+    first = min(chain, key=lambda step: step >> 1)
+    return [step ^ 1 for step in reversed(chain)] if first & 1 else chain

@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from itertools import chain as chained
 from typing import Final
 
 import numpy as np
 
-from deltacam.drawing import chains, duplicates, nodes, tidy
-from deltacam.geometry import curve as curves
+from deltacam.drawing import along, chains, duplicates, flaws, nodes, overlaps, rings, tangles, tidy
+from deltacam.drawing.flaws import Name, point_mm
+from deltacam.drawing.link import link
+from deltacam.drawing.overlaps import Strands
 from deltacam.geometry.pack import Pack
-from deltacam.model import DEFAULT_JOINING, Array, Curve, Finding, Outcome
+from deltacam.model import DEFAULT_JOINING, Array, Curve, Finding, IntArray, Outcome
 from deltacam.units import to_mm
-
-NEAR: Final = 2e-3
-"""The ends of an open chain that are closer than this, m, are named as a gap: a micro-joint, or a mistake."""
 
 NOTHING_INSIDE: Final = "a closed line that encloses nothing"
 """The reason of a sliver: a line drawn back and forth."""
 
-_LISTED: Final = 8
+_TOO_SMALL: Final = (Outcome.IGNORED, "smaller than 0.01 mm overall")
 
+_SPECK: Final = (Outcome.MERGED, "shorter than the joining tolerance of 0.01 mm")
 
-Name = Callable[[int], str]
-"""How messages name a curve, by its index: ``layer CUT, LINE #2F``."""
+_TANGLED: Final = "meets others at a branch point"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,140 +94,178 @@ def join(found: Pack, *, joining: float = DEFAULT_JOINING, name: Name) -> Joined
         DrawingError: thousands of ends in one place.
     """
     joined = Joined()
-    drawn = _drawn(found, joined)
-    repeated = duplicates.find([curve for _, curve in drawn], nodes.JOINING)
-    for later, first in repeated.items():
-        joined.copies[drawn[later][0]] = drawn[first][0]
-    drawn = [pair for i, pair in enumerate(drawn) if i not in repeated]
-    loops = [Loop(curve, (i,), 0.0) for i, curve in drawn if curve.closed]
-    strands = [pair for pair in drawn if not pair[1].closed]
-    loops += _loops(strands, joined)
-    _keep(sorted(loops, key=lambda loop: loop.members[0]), joined, name)
-    _report_copies(joined, name)
+    kept = _kept(found, joined)
+    strands = Strands(found.take(kept[~found.closed[kept]]), kept[~found.closed[kept]])
+    web = _Web.of(strands, joining)
+    if web.traced.ambiguous:
+        split = overlaps.untangle(strands, [step >> 1 for step in chained.from_iterable(web.traced.ambiguous)])
+        if split:
+            joined.copies |= split.copies
+            web = _Web.of(split.strands, joining)
+    for i in np.flatnonzero(web.nodes.specks).tolist():
+        joined.notes[int(web.strands.owner[i])] = _SPECK
+    _add_loops(found, kept[found.closed[kept]], web, joined)
+    _add_chains(web, joined)
+    joined.chains.sort(key=lambda chain: min(chain.members))
+    _note_copies(joined, name)
+    _report(found, web, joined, joining, name)
     return joined
 
 
-def point_mm(point: Array) -> str:
-    """A place for messages: ``(12.000, 3.500)``, mm."""
-    return f"({to_mm(float(point[0])):.3f}, {to_mm(float(point[1])):.3f})"
+@dataclass(frozen=True, slots=True, eq=False)
+class _Web:
+    """Open curves, where they meet, and what they form."""
+
+    strands: Strands
+    nodes: nodes.Nodes
+    traced: chains.Chains
+
+    @classmethod
+    def of(cls, strands: Strands, joining: float) -> _Web:
+        met = nodes.find(strands.pack.ends(), strands.pack.lengths(), joining)
+        return cls(strands, met, chains.trace(met))
+
+    def members(self, steps: Iterable[int]) -> tuple[int, ...]:
+        """The curves of the drawing in a chain of steps; one may contribute several pieces."""
+        owner = self.strands.owner
+        return tuple(dict.fromkeys(int(owner[step >> 1]) for step in steps))
 
 
-def _drawn(found: Pack, joined: Joined) -> list[tuple[int, Curve]]:
-    """The curves to join, with their indices."""
-    drawn = []
-    for i, length in enumerate(found.lengths()):
-        if length <= nodes.COINCIDENT:
-            joined.notes[i] = (Outcome.IGNORED, "of length zero")
-            continue
-        drawn.append((i, found[i]))
-    return drawn
+def _kept(found: Pack, joined: Joined) -> IntArray:
+    """The indices of the curves to join: those that have a length and repeat no other."""
+    points = found.lengths() <= nodes.COINCIDENT
+    joined.notes |= dict.fromkeys(np.flatnonzero(points).tolist(), (Outcome.IGNORED, "of length zero"))
+    kept = np.flatnonzero(~points)
+    repeated = duplicates.find(found.take(kept))
+    joined.copies |= {int(kept[later]): int(kept[first]) for later, first in repeated.items()}
+    return np.delete(kept, list(repeated))
 
 
-def _loops(strands: list[tuple[int, Curve]], joined: Joined) -> list[Loop]:
-    """The loops of open curves; the others become chains."""
-    if not strands:
-        return []
-    ends = np.array([(curve.points[0], curve.points[-1]) for _, curve in strands])
-    found = nodes.find(ends, np.array([curves.length(curve) for _, curve in strands]))
-    traced = chains.trace(found)
-    for i in np.flatnonzero(found.specks).tolist():
-        joined.notes[strands[i][0]] = (Outcome.MERGED, "shorter than the joining tolerance of 0.01 mm")
-    if traced.branches:
-        joined.findings.append(_branch_finding(found.places[traced.branches]))
-    every = [(chain, False) for chain in traced.open] + [(chain, True) for chain in traced.ambiguous]
-    joined.chains = sorted((_chain(chain, strands, tangled) for chain, tangled in every), key=lambda c: min(c.members))
-    return [_loop(chain, strands) for chain in traced.loops]
-
-
-def _chain(chain: list[chains.Step], strands: list[tuple[int, Curve]], tangled: bool) -> Chain:
-    """The chain of steps that do not close."""
-    pieces = [curves.reverse(strands[i][1]) if turned else strands[i][1] for i, turned in chain]
-    curve, _ = tidy.link(pieces, closed=False)
-    count = "an open line" if len(chain) == 1 else f"an open chain of {len(chain)} entities"
-    why = "meets others at a branch point" if tangled else _gap(curve)
-    return Chain(
-        curve=curve,
-        members=tuple(strands[i][0] for i, _ in chain),
-        reason=f"{count}, {why}",
-        gap=float(np.hypot(*(curve.points[-1] - curve.points[0]))),
-        nearly_closed=not tangled and _is_nearly_closed(curve),
-        ambiguous=tangled,
-    )
-
-
-def _is_nearly_closed(curve: Curve) -> bool:
-    """Whether an open curve is an outline but for a gap, like the holding tab of a part."""
-    gap, reach = float(np.hypot(*(curve.points[-1] - curve.points[0]))), curves.length(curve)
-    return len(curve.bulges) > 1 and (gap <= 0.05 * reach or gap <= min(NEAR, 0.25 * reach))
-
-
-def _loop(chain: list[chains.Step], strands: list[tuple[int, Curve]]) -> Loop:
-    """The loop of a closed chain, counter-clockwise from its first entity."""
-    pieces = [curves.reverse(strands[i][1]) if turned else strands[i][1] for i, turned in chain]
-    curve, moved = tidy.link(pieces, closed=True)
-    if curves.signed_area(curve) < 0.0:
-        chain = chain[:1] + [(i, not turned) for i, turned in reversed(chain[1:])]
-        pieces = [curves.reverse(pieces[0]), *(curves.reverse(piece) for piece in reversed(pieces[1:]))]
-        curve, moved = tidy.link(pieces, closed=True)
-    return Loop(curve, tuple(strands[i][0] for i, _ in chain), moved)
-
-
-def _keep(loops: list[Loop], joined: Joined, name: Name) -> None:
-    """Puts the loops that enclose something, each once, into the result."""
-    solid = []
-    for loop in loops:
-        ring = curves.reverse(loop.curve) if curves.signed_area(loop.curve) < 0.0 else loop.curve
-        curve, moved = (None, 0.0) if _is_sliver(ring) else tidy.cleaned(ring)
+def _add_loops(found: Pack, closed: IntArray, web: _Web, joined: Joined) -> None:
+    """Puts the loops that enclose something, each once, into the result, and what only looks like one elsewhere."""
+    pack, moved, members = _rings(found, closed, web)
+    small = tidy.tiny(pack)
+    slivers = set(tidy.slivers(pack))
+    repaired: dict[int, Curve] = {}
+    for i in tidy.speckled(pack).tolist():
+        curve, shift = (None, 0.0) if small[i] or i in slivers else tidy.cleaned(pack[i])
         if curve is None:
-            for i in loop.members:
-                joined.notes[i] = (Outcome.IGNORED, NOTHING_INSIDE)
-            what = "a closed line encloses nothing and is not cut"
-            joined.findings.append(Finding(what, where=name(loop.members[0]), kind="sliver"))
+            small[i] |= i not in slivers
         else:
-            solid.append(replace(loop, curve=curve, error=loop.error + moved))
-    repeated = duplicates.find([loop.curve for loop in solid], nodes.JOINING)
+            repaired[i], moved[i] = curve, moved[i] + shift
+    for i in np.flatnonzero(small).tolist():
+        joined.notes |= dict.fromkeys(members[i], _TOO_SMALL)
+    for i in sorted(slivers - set(np.flatnonzero(small).tolist())):
+        line = tidy.halved(pack[i])
+        gap = float(np.hypot(*(line.points[-1] - line.points[0])))
+        joined.chains.append(Chain(line, members[i], NOTHING_INSIDE, gap))
+    solid = [i for i in range(len(pack)) if not small[i] and i not in slivers]
+    rest = pack.take(np.array(solid, dtype=np.int64))
+    if repaired:
+        rest = Pack.of(repaired.get(i) or pack[i] for i in solid)
+    repeated = duplicates.find(rest)
     for later, first in repeated.items():
-        for i in solid[later].members:
-            joined.copies[i] = solid[first].members[0]
-    joined.loops = [loop for i, loop in enumerate(solid) if i not in repeated]
+        joined.copies |= dict.fromkeys(members[solid[later]], members[solid[first]][0])
+    joined.loops = [Loop(rest[at], members[i], float(moved[i])) for at, i in enumerate(solid) if at not in repeated]
 
 
-def _is_sliver(curve: Curve) -> bool:
-    """Whether a closed curve is nowhere as wide as the joining tolerance, like a line drawn back and forth."""
-    if 2.0 * abs(curves.signed_area(curve)) > nodes.JOINING * curves.length(curve):
-        return False
-    # A figure of eight has no signed area either; what it encloses decides.
-    from shapely import Polygon, make_valid
+def _rings(found: Pack, closed: IntArray, web: _Web) -> tuple[Pack, Array, list[tuple[int, ...]]]:
+    """All closed curves, counter-clockwise, how far a point of each was moved, m, and their members."""
+    single = found.take(closed)
+    single = rings.reverse(single, rings.signed_areas(single) < 0.0)
+    loops = web.traced.loops
+    linked, moved = link(web.strands.pack, loops, closed=True)
+    wrong = rings.signed_areas(linked) < 0.0
+    if wrong.any():
+        loops = [
+            [step ^ 1 for step in (loop[0], *reversed(loop[1:]))] if turned else loop
+            for loop, turned in zip(loops, wrong.tolist(), strict=True)
+        ]
+        linked, moved = link(web.strands.pack, loops, closed=True)
+    members = [(i,) for i in closed.tolist()] + [web.members(loop) for loop in loops]
+    order = sorted(range(len(members)), key=lambda i: members[i][0])
+    pack = rings.both(single, linked).take(np.array(order, dtype=np.int64))
+    return pack, np.concatenate([np.zeros(len(single)), moved])[order], [members[i] for i in order]
 
-    points, _ = curves.flatten(curve, 1e-6)
-    if len(points) < 3:
-        return True
-    return bool(make_valid(Polygon(points)).buffer(-0.5 * nodes.JOINING).is_empty)
+
+def _add_chains(web: _Web, joined: Joined) -> None:
+    """Puts the lines that do not close into the result; those under 0.01 mm become notes."""
+    steps = web.traced.open + web.traced.ambiguous
+    pack, _ = link(web.strands.pack, steps, closed=False)
+    lengths, small, ends = pack.lengths(), tidy.tiny(pack), pack.ends()
+    gaps = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    for i, run in enumerate(steps):
+        members, tangled, gap = web.members(run), i >= len(web.traced.open), float(gaps[i])
+        if small[i] and not tangled:
+            joined.notes |= dict.fromkeys(members, _TOO_SMALL)
+            continue
+        curve = pack[i]
+        count = "an open line" if len(members) == 1 else f"an open chain of {len(members)} entities"
+        why = _TANGLED if tangled else _ends_in_words(curve, gap)
+        nearly = not tangled and _is_nearly_closed(curve, gap, float(lengths[i]))
+        joined.chains.append(Chain(curve, members, f"{count}, {why}", gap, nearly, tangled))
 
 
-def _gap(curve: Curve) -> str:
-    """Where an open chain ends, in words."""
+def _is_nearly_closed(curve: Curve, gap: float, reach: float) -> bool:
+    """Whether an open curve is an outline but for a gap, like the holding tab of a part."""
+    return len(curve.bulges) > 1 and (gap <= 0.05 * reach or gap <= min(flaws.NEAR, 0.25 * reach))
+
+
+def _ends_in_words(curve: Curve, gap: float) -> str:
+    """Where an open chain ends."""
     start, end = curve.points[0], curve.points[-1]
-    gap = float(np.hypot(*(end - start)))
-    if gap <= NEAR and len(curve.bulges) > 1:
+    if gap <= flaws.NEAR and len(curve.bulges) > 1:
         return f"gap of {to_mm(gap):.3g} mm at {point_mm(start)} mm"
     return f"from {point_mm(start)} to {point_mm(end)} mm"
 
 
-def _branch_finding(places: Array) -> Finding:
-    """The finding that more than two lines meet in the places, (K, 2) m."""
-    listed = ", ".join(point_mm(place) for place in places[:_LISTED])
-    more = f" and {len(places) - _LISTED} more" if len(places) > _LISTED else ""
-    many = "1 place" if len(places) == 1 else f"{len(places)} places"
-    hint = "lines that could be closed in more than one way stay open: draw each outline for itself"
-    return Finding(f"more than two lines meet in {many}", where=f"{listed}{more} mm", hint=hint, kind="branch")
-
-
-def _report_copies(joined: Joined, name: Name) -> None:
-    """Notes every curve that is drawn twice, and one finding that counts them."""
+def _note_copies(joined: Joined, name: Name) -> None:
+    """Notes every curve that is drawn twice, with one that is not."""
     for later, first in joined.copies.items():
+        while first in joined.copies:
+            first = joined.copies[first]
+        joined.copies[later] = first
         joined.notes[later] = (Outcome.MERGED, f"duplicate of {name(first)}")
-    if joined.copies:
-        many = "1 entity is" if len(joined.copies) == 1 else f"{len(joined.copies)} entities are"
-        where = name(min(joined.copies))
-        joined.findings.append(Finding(f"{many} drawn twice and cut once", where=where, kind="duplicate"))
+
+
+def _report(found: Pack, web: _Web, joined: Joined, joining: float, name: Name) -> None:
+    """The findings about how the curves meet."""
+    joined.findings += flaws.copies(joined.copies, found, name)
+    joined.findings += flaws.branches(web.nodes.places[web.traced.branches])
+    joined.findings += tangles.find(web.strands, web.nodes, web.traced.ambiguous, name)
+    joined.findings += _on_loops(joined, name)
+    opened = [chain for chain in joined.chains if not chain.ambiguous and chain.reason != NOTHING_INSIDE]
+    gaps = [chain for chain in opened if chain.gap <= flaws.NEAR and len(chain.curve.bulges) > 1]
+    joined.findings += flaws.limited(
+        [flaws.gap(chain.gap, chain.curve.points[0], name(chain.members[0])) for chain in gaps]
+    )
+    joined.findings += flaws.between(*_free_ends(web), joining, name)
+    slivers = [chain for chain in joined.chains if chain.reason == NOTHING_INSIDE]
+    joined.findings += flaws.slivers([(chain.curve.points[0], name(chain.members[0])) for chain in slivers])
+    short = np.flatnonzero(found.lengths() < nodes.MOVED).tolist()
+    dropped = [i for i, note in sorted(joined.notes.items()) if note in (_TOO_SMALL, _SPECK)]
+    kept = sum(i not in joined.notes for i in short)
+    joined.findings += flaws.tiny(dropped, kept, found, name)
+
+
+def _on_loops(joined: Joined, name: Name) -> list[Finding]:
+    """The findings that open chains lie on loops; it becomes their reason."""
+    found = []
+    for at, loop in along.find([chain.curve for chain in joined.chains], [loop.curve for loop in joined.loops]).items():
+        chain = joined.chains[at]
+        reason = f"lies along contour of {name(joined.loops[loop].members[0])}"
+        joined.chains[at] = replace(chain, reason=reason)
+        found.append(
+            Finding(reason, where=name(chain.members[0]), kind="duplicate", place=flaws.place(chain.curve.points[0]))
+        )
+    return flaws.limited(found)
+
+
+def _free_ends(web: _Web) -> tuple[Array, list[int], list[int]]:
+    """Ends of open chains that meet nothing, (E, 2) m, the chain of each, and a curve of each chain."""
+    ends = np.array([(run[0], run[-1] ^ 1) for run in web.traced.open], dtype=np.int64).reshape(-1)
+    node_of = web.nodes.labels.reshape(-1)
+    met = np.bincount(node_of[np.repeat(~web.nodes.specks, 2)], minlength=len(web.nodes.places))
+    free = np.flatnonzero(met[node_of[ends]] == 1)
+    curves = [int(web.strands.owner[run[0] >> 1]) for run in web.traced.open]
+    return web.strands.pack.ends().reshape(-1, 2)[ends[free]], (free // 2).tolist(), curves

@@ -1,4 +1,4 @@
-"""Small repairs of one curve that stay within stated distances: closing it, and dropping specks of segments."""
+"""Small repairs of closed curves that stay within stated distances, and which of them are no contours at all."""
 
 from __future__ import annotations
 
@@ -6,34 +6,50 @@ from typing import Final
 
 import numpy as np
 
+from deltacam.drawing import rings
+from deltacam.drawing.nodes import MOVED
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Curve
+from deltacam.geometry.pack import Pack
+from deltacam.model import Array, BoolArray, Curve, IntArray
 
 SHORTEST: Final = 1e-6
 """Shorter segments are merged into their neighbours, m."""
 
 
-def link(pieces: list[Curve], *, closed: bool) -> tuple[Curve, float]:
-    """The open curves run one after the other, and how far an end had to move, m.
+def speckled(pack: Pack) -> IntArray:
+    """Which curves have segments under ``SHORTEST``."""
+    curve = np.repeat(np.arange(len(pack)), pack.counts)
+    return np.unique(curve[rings.segment_lengths(pack) < SHORTEST])
 
-    Where two ends differ, the end of a line moves to that of an arc; of two of a kind the second moves to the first.
 
-    Args:
-        pieces: open, each starting about where the one before ends.
-        closed: whether the last also ends where the first starts.
-    """
-    blocks = [piece.points.copy() for piece in pieces]
-    moved = 0.0
-    for i in range(0 if closed else 1, len(pieces)):
-        end, start = blocks[i - 1][-1], blocks[i][0]
-        gap = float(np.hypot(*(end - start)))
-        moved = max(moved, gap)
-        if gap and pieces[i - 1].bulges[-1] == 0.0 and pieces[i].bulges[0] != 0.0:
-            end[:] = start
-        else:
-            start[:] = end
-    points = np.concatenate([block[:-1] for block in blocks] + ([] if closed else [blocks[-1][-1:]]))
-    return Curve(points=points, bulges=np.concatenate([piece.bulges for piece in pieces]), closed=closed), moved
+def tiny(pack: Pack) -> BoolArray:
+    """Whether each curve is smaller than 0.01 mm overall."""
+    boxes = pack.bounds()
+    return np.asarray((boxes[:, 2:] - boxes[:, :2]).max(axis=1, initial=0.0) < MOVED)
+
+
+def slivers(pack: Pack) -> list[int]:
+    """The closed curves that are nowhere as wide as 0.01 mm, like a line drawn back and forth."""
+    thin = 2.0 * np.abs(rings.signed_areas(pack)) <= MOVED * pack.lengths()
+    return [i for i in np.flatnonzero(thin).tolist() if _is_sliver(pack[i])]
+
+
+def halved(curve: Curve) -> Curve:
+    """The line, once, that a closed curve draws back and forth."""
+    one = int(np.argmax(np.hypot(*(curve.points - curve.points[0]).T)))
+    other = int(np.argmax(np.hypot(*(curve.points - curve.points[one]).T)))
+    start, end = sorted((one, other))
+    return Curve(points=curve.points[start : end + 1], bulges=curve.bulges[start:end], closed=False)
+
+
+def _is_sliver(curve: Curve) -> bool:
+    """Whether a closed curve without much area to one side encloses nothing; a figure of eight does."""
+    from shapely import Polygon, make_valid
+
+    points, _ = curves.flatten(curve, 0.1 * MOVED)
+    if len(points) < 3:
+        return True
+    return bool(make_valid(Polygon(points)).buffer(-0.5 * MOVED).is_empty)
 
 
 def cleaned(curve: Curve) -> tuple[Curve | None, float]:

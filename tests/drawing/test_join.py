@@ -86,7 +86,7 @@ def test_what_is_drawn_twice_is_cut_once(shape: Curve, chance: random.Random) ->
     assert len(loop.members) in (1, len(parts))
     assert len(result.notes) == 2 * len(parts) + 1 - len(loop.members)
     assert {outcome for outcome, _ in result.notes.values()} == {Outcome.MERGED}
-    assert all(reason.startswith("duplicate of #") for _, reason in result.notes.values())
+    assert all(reason.startswith("duplicate of layer CUT, LINE #") for _, reason in result.notes.values())
 
 
 def test_closed_contours_split_differently_are_duplicates() -> None:
@@ -103,9 +103,9 @@ def test_closed_contours_split_differently_are_duplicates() -> None:
 def test_a_line_that_only_covers_part_of_another_is_no_duplicate() -> None:
     whole = segment((0, 10), (0, 0), (10, 0), (10, 10))
     back = segment((0, 10), (0, 0), (10, 0), (0, 0))
-    assert not duplicates.same(back, whole, 1e-5)
-    assert not duplicates.same(whole, back, 1e-5)
-    assert duplicates.same(whole, curves.reverse(whole), 1e-5)
+    assert not duplicates.same(back, whole)
+    assert not duplicates.same(whole, back)
+    assert duplicates.same(whole, curves.reverse(whole))
 
 
 def test_arcs_of_other_bulge_between_the_same_ends_are_no_duplicates() -> None:
@@ -139,13 +139,15 @@ def test_a_gap_up_to_the_tolerance_is_bridged_and_a_wider_one_is_named() -> None
     assert closed.loops[0].error == pytest.approx(9.9e-6)
     opened = outline(0.0101)
     assert opened.loops == []
-    assert opened.open_chains == 1
-    assert {reason for _, reason in opened.notes.values()} == {
-        "an open chain of 2 entities, gap of 0.0101 mm at (0.000, 0.000) mm"
-    }
-    assert opened.findings[0].what == "1 open chain is not cut"
-    assert opened.findings[0].where == "layer CUT"
-    assert len(opened.outlines) == 1
+    (chain,) = opened.chains
+    assert chain.members == (0, 1)
+    assert chain.reason == "an open chain of 2 entities, gap of 0.0101 mm at (0.000, 0.000) mm"
+    assert chain.gap == pytest.approx(1.01e-5)
+    assert chain.nearly_closed
+    assert not chain.ambiguous
+    (finding,) = opened.findings
+    assert (finding.kind, finding.where, finding.place) == ("gap", "layer CUT, LINE #0", (0.0, 0.0))
+    assert not finding.blocks
 
 
 def test_the_end_of_a_line_moves_to_that_of_an_arc() -> None:
@@ -175,7 +177,7 @@ def test_a_speck_does_not_bridge_more_than_the_tolerance() -> None:
     corners = segment((0.02, 0), (10, 0), (10, 10), (0, 0.004))
     result = joined(corners, segment((0.007, 0.001), (0.013, 0.001)))
     assert result.loops == []
-    assert result.open_chains == 1
+    assert [chain.members for chain in result.chains] == [(0,)]
     assert result.notes[1] == (Outcome.MERGED, "shorter than the joining tolerance of 0.01 mm")
 
 
@@ -184,12 +186,16 @@ def test_a_polyline_that_ends_where_it_starts_is_closed() -> None:
     assert len(loop.curve.points) == 3
 
 
-def test_a_line_drawn_back_and_forth_is_no_contour() -> None:
+def test_a_line_drawn_back_and_forth_is_one_open_line() -> None:
     spike = Curve(points=MM * np.array([[0.0, 0.0], [10.0, 0.0]]), bulges=np.zeros(2))
     result = joined(spike, curves.circle(np.array([0.1, 0.1]), 5 * MM))
     assert len(result.loops) == 1
-    assert result.notes == {0: (Outcome.IGNORED, "a closed line that encloses nothing")}
-    assert result.findings[0].where == "layer CUT, LINE #0"
+    (chain,) = result.chains
+    assert (chain.members, chain.reason) == ((0,), "a closed line that encloses nothing")
+    assert np.array_equal(chain.curve.points, spike.points)
+    assert result.notes == {}
+    (finding,) = result.findings
+    assert (finding.kind, finding.where, finding.place) == ("sliver", "layer CUT, LINE #0", (0.0, 0.0))
 
 
 def test_a_figure_of_eight_is_no_sliver() -> None:
@@ -218,9 +224,11 @@ def test_a_dead_end_does_not_keep_an_outline_open() -> None:
     ]
     result = joined(*square, segment((10, 10), (15, 15)), segment((0, 0), (-5, -5), (-9, -9)))
     assert [loop.members for loop in result.loops] == [(0, 1, 2, 3)]
-    assert set(result.notes) == {4, 5}
-    assert result.findings[0].what == "more than two lines meet in 2 places"
-    assert "(10.000, 10.000)" in result.findings[0].where
+    assert [chain.members for chain in result.chains] == [(4,), (5,)]
+    branches = [finding for finding in result.findings if finding.kind == "branch"]
+    assert sorted(finding.place or () for finding in branches) == [(0.0, 0.0), (0.01, 0.01)]
+    assert {finding.where for finding in branches} == {"(0.000, 0.000) mm", "(10.000, 10.000) mm"}
+    assert not any(finding.blocks for finding in branches)
 
 
 def test_contours_that_touch_in_a_corner_are_both_cut() -> None:
@@ -230,16 +238,19 @@ def test_contours_that_touch_in_a_corner_are_both_cut() -> None:
         *pieces(curves.polygon(MM * np.array([[20, 20], [30, 20], [30, 30]]))),
     )
     assert [sorted(loop.members) for loop in result.loops] == [[0, 1, 2], [3, 4, 5], [6, 7, 8]]
-    assert len(result.findings) == 1
+    assert [finding.kind for finding in result.findings] == ["branch", "branch"]
 
 
 def test_parts_with_a_common_edge_stay_open_and_are_reported() -> None:
     left, right = segment((10, 0), (0, 0), (0, 10), (10, 10)), segment((10, 0), (20, 0), (20, 10), (10, 10))
     result = joined(left, segment((10, 0), (10, 10)), right)
     assert result.loops == []
-    assert {reason for _, reason in result.notes.values()} == {"an open line, meets others at a branch point"}
-    assert len(result.tangles) == 3
-    assert result.findings[0].what == "more than two lines meet in 2 places"
+    assert {chain.reason for chain in result.chains} == {"an open line, meets others at a branch point"}
+    assert [chain.ambiguous for chain in result.chains] == [True, True, True]
+    (finding,) = (finding for finding in result.findings if finding.blocks)
+    assert (finding.kind, finding.where) == ("common_edge", "layer CUT, LINE #0")
+    assert finding.what == "2 outlines share lines, for one at (10.000, 5.000) mm"
+    assert finding.place == pytest.approx((0.01, 0.005))
 
 
 def test_a_bridge_between_two_outlines_is_an_open_line() -> None:
@@ -247,8 +258,8 @@ def test_a_bridge_between_two_outlines_is_an_open_line() -> None:
     right = pieces(curves.polygon(MM * np.array([[30, 0], [40, 0], [40, 10]])))
     result = joined(*left, *right, segment((10, 0), (30, 0)))
     assert len(result.loops) == 2
-    assert set(result.notes) == {6}
-    assert result.tangles == []
+    assert [(chain.members, chain.ambiguous) for chain in result.chains] == [((6,), False)]
+    assert not any(finding.blocks for finding in result.findings)
 
 
 def test_many_ends_in_one_place_are_refused_and_not_a_hang() -> None:
@@ -267,7 +278,7 @@ def test_a_row_of_ends_never_closes_a_gap_wider_than_the_tolerance(step: float) 
         assert "crowd" in error.what  # noqa: PT017
         return
     assert result.loops == []
-    assert result.notes[0] == (Outcome.IGNORED, "an open line, gap of 0.03 mm at (0.000, 0.000) mm")
+    assert result.chains[0].reason == "an open line, gap of 0.03 mm at (0.000, 0.000) mm"
 
 
 def test_ten_thousand_lines_are_joined_in_linear_time() -> None:
