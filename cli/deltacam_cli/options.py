@@ -14,6 +14,7 @@ import click
 
 from deltacam.errors import DeltacamError
 from deltacam.units import METRES_PER, metres_per, parse_angle, parse_length, parse_speed, to_mm
+from deltacam_cli.main import LONGEST_MESSAGE
 
 if TYPE_CHECKING:
     from deltacam.defaults import Defaults
@@ -58,7 +59,7 @@ def defaults() -> Defaults:
 
     found = find([Path(), Path(click.get_app_dir("deltacam"))])
     if found.file:
-        click.echo(f"note: defaults from {plain(found.file)}", err=True)
+        click.echo(f"note: defaults from {plain(found.file, longest=LONGEST_MESSAGE)}", err=True)
     return found
 
 

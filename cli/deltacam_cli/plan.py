@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from deltacam.errors import DeltacamError
 from deltacam_cli import options
 from deltacam_cli.main import EXIT_FAILED, LONGEST_MESSAGE, show_json
 from deltacam_cli.progress import ProgressLine
 
 if TYPE_CHECKING:
+    from deltacam.defaults import Defaults
     from deltacam.model import Process
     from deltacam.pipeline import Outputs, Planned
+    from deltacam.robot.robot import Robot
+
+T = TypeVar("T")
 
 
 @click.command("plan", no_args_is_help=True)
 @click.argument("drawing", type=click.Path(path_type=Path))
 @click.option("-o", "--output", "folder", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.")
-@click.option("--robot", default="delta-300", show_default=True, help="A built-in robot, or a robot file (.toml).")
-@click.option("--process", default="steel-1mm-fibre", show_default=True, help="A built-in process, or a file (.toml).")
-@click.option("--units", metavar="UNIT", help="What one unit of the drawing is: mm, in, ...; overrides its header.")
+@click.option("--robot", help="A built-in robot, or a robot file (.toml). Without deltacam.toml: delta-300.")
+@click.option("--process", help="A built-in process, or a file (.toml). Without deltacam.toml: steel-1mm-fibre.")
+@options.reading_options
+@click.option("--accept-loss", is_flag=True, help="Plan what could be read of a damaged drawing.")
 @click.option("--kerf", metavar="LENGTH", help="Width of the cut, mm unless a unit is given (0.008in).")
 @click.option("--feed", metavar="SPEED", help="Cutting speed, mm/s unless a unit is given (12m/min).")
 @click.option("--tolerance", metavar="LENGTH", help="Largest deviation from the kerf path, mm unless a unit is given.")
@@ -32,19 +39,7 @@ if TYPE_CHECKING:
 @click.option("--dry-run", is_flag=True, help="The same motion with the laser off.")
 @click.option("--frame", is_flag=True, help="Only trace the bounding box, with the laser off.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the summary.")
-def command(
-    drawing: Path,
-    folder: Path,
-    robot: str,
-    process: str,
-    units: str | None,
-    at: str,
-    rotate: str,
-    dry_run: bool,
-    frame: bool,
-    as_json: bool,
-    **single_values: str | None,
-) -> None:
+def command(drawing: Path, folder: Path, *, dry_run: bool, frame: bool, as_json: bool, **values: Any) -> None:
     """Plan DRAWING (a DXF file) and verify the program.
 
     Writes NAME.program.csv, NAME.report.json and NAME.report.html. The program is only written if every check passed.
@@ -59,27 +54,60 @@ def command(
     if dry_run and frame:
         raise click.UsageError("--dry-run and --frame exclude each other")
     Outputs.of(drawing, folder).clear()  # before anything else can be refused
+    own = options.defaults()
     with ProgressLine() as progress:
         planned, outputs = plan_to_folder(
             drawing,
             folder,
-            robot=robot,
-            process=_process(process, **single_values),
-            unit=options.unit("--units", units),
-            at=options.place("--at", at),
-            rotation=options.angle("--rotate", rotate),
             mode=Mode.FRAME if frame else Mode.DRY_RUN if dry_run else Mode.CUT,
             progress=progress,
+            **_settings(own, **values),
         )
-    _show(planned, outputs, as_json=as_json)
+    _show(planned, outputs, own, as_json=as_json)
     if not planned.report.passed:
         click.echo("error: a check failed, so no program was written; the report says which", err=True)
         raise click.exceptions.Exit(EXIT_FAILED)
 
 
-def _process(name: str, *, kerf: str | None, feed: str | None, tolerance: str | None, corner: str | None) -> Process:
+def _settings(
+    own: Defaults,
+    *,
+    robot: str | None,
+    process: str | None,
+    units: str | None,
+    layers: tuple[str, ...],
+    ignored_layers: tuple[str, ...],
+    join: str | None,
+    accept_loss: bool,
+    at: str,
+    rotate: str,
+    **single_values: str | None,
+) -> dict[str, Any]:
+    """What the command line and the user's own defaults say, as the pipeline takes it."""
+    selected = {"layers": layers, "ignored_layers": ignored_layers, "join": join, "accept_loss": accept_loss}
+    return {
+        "robot": _robot(robot, own),
+        "process": _process(process, own, **single_values),
+        "unit": options.unit("--units", units),
+        "default_unit": own.units,
+        "selection": options.selection(own, **selected),
+        "at": options.place("--at", at),
+        "rotation": options.angle("--rotate", rotate),
+    }
+
+
+def _robot(name: str | None, own: Defaults) -> Robot:
+    from deltacam.pipeline import DEFAULT_ROBOT
+    from deltacam.robot.reader import load_robot
+
+    return _load(load_robot, name, own.robot, DEFAULT_ROBOT, f"{own.file}: robot")
+
+
+def _process(
+    name: str | None, own: Defaults, *, kerf: str | None, feed: str | None, tolerance: str | None, corner: str | None
+) -> Process:
     """The process with the single values that the command line gives."""
-    from deltacam.cutting.process import load_process
+    from deltacam.cutting.process import DEFAULT_PROCESS, load_process
 
     values: dict[str, Any] = {
         "kerf": options.length("--kerf", kerf),
@@ -87,10 +115,21 @@ def _process(name: str, *, kerf: str | None, feed: str | None, tolerance: str | 
         "tolerance": options.length("--tolerance", tolerance),
         "corner": corner,
     }
-    return replace(load_process(name), **{key: value for key, value in values.items() if value is not None})
+    process = _load(load_process, name, own.process, DEFAULT_PROCESS, f"{own.file}: process")
+    return replace(process, **{key: value for key, value in values.items() if value is not None})
 
 
-def _show(planned: Planned, outputs: Outputs, *, as_json: bool) -> None:
+def _load(load: Callable[[str], T], given: str | None, own: str | None, built_in: str, where: str) -> T:
+    """What the command line names, else what the user's own defaults name (``where``), else what is built in."""
+    if given is not None or own is None:
+        return load(built_in if given is None else given)
+    try:
+        return load(own)
+    except DeltacamError as problem:
+        raise DeltacamError(problem.what, where=problem.where or where, hint=problem.hint) from problem
+
+
+def _show(planned: Planned, outputs: Outputs, own: Defaults, *, as_json: bool) -> None:
     from deltacam.plain import plain
     from deltacam.verification.report_json import to_dict
     from deltacam.verification.report_text import to_text
@@ -98,7 +137,8 @@ def _show(planned: Planned, outputs: Outputs, *, as_json: bool) -> None:
     files = [outputs.program] if planned.report.passed else []
     files += [outputs.report_json, outputs.report_html]
     if as_json:
-        show_json({**to_dict(planned.report), "files": [str(path) for path in files]})
+        shown = {"defaults": own.file or None, "files": [str(path) for path in files]}
+        show_json({**to_dict(planned.report), **shown})
         return
     click.echo(to_text(planned.report))
     for path in files:

@@ -18,7 +18,7 @@ def deltacam(*arguments: str | Path, folder: Path) -> subprocess.CompletedProces
     return subprocess.run(
         [sys.executable, "-c", code, *map(str, arguments)],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "XDG_CONFIG_HOME": str(folder / "none")},
         capture_output=True,
         text=True,
         check=False,
@@ -60,6 +60,7 @@ def test_json_is_one_object(tmp_path: Path) -> None:
     result = json.loads(run.stdout)
     assert result["passed"] is True
     assert result["files"] == [f"wrench-inch.{end}" for end in ("program.csv", "report.json", "report.html")]
+    assert result.pop("defaults") is None
     assert result == {**json.loads((tmp_path / "wrench-inch.report.json").read_text()), "files": result["files"]}
     refused = deltacam("plan", "none.dxf", "--json", folder=tmp_path)
     assert refused.returncode == 2
@@ -100,6 +101,8 @@ def test_an_edited_program_fails_with_exit_code_1(tmp_path: Path) -> None:
         (["plan", "wrench.dxf", "--rotate", "90x"], "--rotate"),
         (["plan", "wrench.dxf", "--at", "150,0"], "leaves the sheet"),
         (["plan", "wrench.dxf", "--units", "ell"], "ell"),
+        (["plan", "wrench.dxf", "--join", "9"], "--join"),
+        (["plan", "wrench.dxf", "--layer", ""], "--layer"),
         (["plan", "wrench.dxf", "--robot", "delta-30"], "delta-300"),
         (["plan", "wrench.dxf", "--robot", "bad.toml"], "base_radius_mm"),
         (["plan", "wrench.dxf", "--process", "stel-1mm-fibre"], "steel-1mm-fibre"),
