@@ -1,4 +1,8 @@
-"""One function per kind of DXF entity that draws a line: its attributes to a shape, the only place that reads them."""
+"""One function per kind of DXF entity that draws a line: its numbers as the file gives them, read nowhere else.
+
+The numbers come straight from where ezdxf keeps them: its attribute access takes most of the time of a large drawing,
+and puts a default in the place of a number that is missing, like a radius of 1.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +11,11 @@ from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
-from ezdxf.math import OCS, Vec3, fit_points_to_cad_cv
+from ezdxf.math import OCS, Vec3
 
-from deltacam.drawing.shapes import Conic, Lines, Shape, Spline
+from deltacam.drawing import splines
+from deltacam.drawing.batches import Gathered
+from deltacam.drawing.shapes import Lines, Spline
 from deltacam.model import Array
 
 _IGNORED: Final = {
@@ -21,6 +27,7 @@ _IGNORED: Final = {
     **dict.fromkeys(("RAY", "XLINE"), "a construction line without an end"),
     **dict.fromkeys(("3DFACE", "3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "HELIX"), "a body or face in space"),
     **dict.fromkeys(("VIEWPORT", "ACAD_TABLE", "LIGHT", "SUN", "SECTION", "GEODATA"), "not geometry of the part"),
+    **dict.fromkeys(("ACAD_PROXY_ENTITY", "ACAD_PROXY_OBJECT"), "an object that only its own program can draw"),
     "POINT": "a point is not a line",
     "SHAPE": "a symbol from a font",
     "MLINE": "a multiple line: explode it to lines if it is to be cut",
@@ -29,17 +36,8 @@ _MESH: Final = "a mesh in space"
 _FRAME: Final = 16
 """Bit of a VERTEX that belongs to the frame of a fitted polyline and is not on the line."""
 
-
-def layer(entity: Any) -> str:
-    """The layer of an entity of any kind, also of one that ezdxf only stores."""
-    if entity.dxf.is_supported("layer"):
-        return str(entity.dxf.get("layer", "0"))
-    return str(entity.graphic_properties().get("layer", "0"))
-
-
-def is_hidden(entity: Any) -> bool:
-    """Whether an entity is marked as invisible."""
-    return entity.dxf.is_supported("invisible") and bool(entity.dxf.get("invisible", 0))
+_CLOSED, _SPACE, _MESHES = 1, 8, 16 | 64
+"""Bits of a POLYLINE: closed; in space; a mesh."""
 
 
 def is_drawn(kind: str) -> bool:
@@ -52,48 +50,71 @@ def why_not(kind: str) -> str:
     return _IGNORED.get(kind, f"deltacam does not cut {kind} entities")
 
 
-def read(entity: Any) -> tuple[Shape | str, Array]:
-    """The shape of an entity, or in words why it has none; and the matrix (4, 4) from its coordinates to the drawing's.
+def gather(kind: str, raw: Any, index: int, into: Gathered) -> str:
+    """Adds the numbers of an entity to those of its layout or block; in words why it draws no line, else nothing.
+
+    Args:
+        kind: its DXF type.
+        raw: the entity.
+        index: its number in its layout or block.
+        into: where to.
 
     Raises:
         ValueError: numbers that make no shape.
+        KeyError: a number that is missing.
     """
-    shape = _READERS[entity.dxftype()](entity)
-    flat = isinstance(shape, Lines) and not shape.bulges.any()
-    in_world = entity.dxftype() in ("LINE", "SPLINE", "ELLIPSE") or (
-        flat and entity.dxftype() == "POLYLINE" and entity.is_3d_polyline
-    )
-    return shape, np.eye(4) if in_world else _ocs(entity.dxf.extrusion)
+    return _READERS[kind](raw, raw.dxf.__dict__, index, into)
 
 
-def _ocs(extrusion: Any) -> Array:
-    """The matrix (4, 4) from object coordinates to the drawing's; an extrusion of (0, 0, 0) means (0, 0, 1)."""
+def axes(extrusion: Any) -> Array:
+    """The matrix (3, 3) from object coordinates to the drawing's; an extrusion of (0, 0, 0) means (0, 0, 1)."""
     normal = Vec3(extrusion)
     ocs = OCS(normal if normal.magnitude > 0.0 else Vec3(0, 0, 1))
-    matrix = np.eye(4)
-    matrix[:3, :3] = [tuple(axis) for axis in (ocs.ux, ocs.uy, ocs.uz)]
-    return matrix
+    return np.array([tuple(axis) for axis in (ocs.ux, ocs.uy, ocs.uz)])
 
 
-def _line(entity: Any) -> Shape | str:
-    return Lines(points=np.array([entity.dxf.start.xyz, entity.dxf.end.xyz]), bulges=np.zeros(1))
+def _up(numbers: dict[str, Any]) -> float:
+    """1 where object coordinates are the drawing's, -1 where they are seen from below, 0 where they are tilted."""
+    extrusion = numbers.get("extrusion")
+    if extrusion is None:
+        return 1.0
+    x, y, z = extrusion
+    if x == 0.0 and y == 0.0:
+        return -1.0 if z < 0.0 else 1.0
+    return 0.0
 
 
-def _circle(entity: Any) -> Shape | str:
-    return Conic(frame=_round(entity))
+def _line(_raw: Any, numbers: dict[str, Any], index: int, into: Gathered) -> str:
+    start, end = numbers["start"].xyz, numbers["end"].xyz
+    into.segments.extend(start)
+    into.segments.extend(end)
+    into.segment_of.append(index)
+    return ""
 
 
-def _arc(entity: Any) -> Shape | str:
-    start, end = float(entity.dxf.start_angle), float(entity.dxf.end_angle)
-    return Conic(_round(entity), math.radians(start), math.radians(_span(end - start, 360.0)))
+def _circle(_raw: Any, numbers: dict[str, Any], index: int, into: Gathered) -> str:
+    return _round(numbers, index, into, 0.0, 2.0 * math.pi)
 
 
-def _round(entity: Any) -> Array:
-    """Centre and the two radii of a circle, (3, 3)."""
-    radius = float(entity.dxf.radius)
+def _arc(_raw: Any, numbers: dict[str, Any], index: int, into: Gathered) -> str:
+    start, end = numbers["start_angle"], numbers["end_angle"]
+    return _round(numbers, index, into, math.radians(start), math.radians(_span(end - start, 360.0)))
+
+
+def _round(numbers: dict[str, Any], index: int, into: Gathered, start: float, span: float) -> str:
+    """A circle or an arc."""
+    x, y, z = numbers["center"].xyz
+    radius = numbers["radius"]
     if radius < 0.0:
         raise ValueError(f"the radius {radius:g} is negative")
-    return np.array([entity.dxf.center.xyz, (radius, 0.0, 0.0), (0.0, radius, 0.0)])
+    up = _up(numbers)
+    if up:
+        into.conics.extend((up * x, y, up * z, up * radius, 0.0, 0.0, 0.0, radius, 0.0, start, span))
+    else:
+        frame = np.array([(x, y, z), (radius, 0.0, 0.0), (0.0, radius, 0.0)]) @ axes(numbers["extrusion"])
+        into.conics.extend((*frame.ravel().tolist(), start, span))
+    into.conic_of.append(index)
+    return ""
 
 
 def _span(difference: float, turn: float) -> float:
@@ -109,62 +130,101 @@ def _span(difference: float, turn: float) -> float:
     return turn if min(span, turn - span) < 1e-9 * turn else span
 
 
-def _ellipse(entity: Any) -> Shape | str:
-    major = Vec3(entity.dxf.major_axis)
-    normal = Vec3(entity.dxf.extrusion)
-    normal = normal.normalize() if normal.magnitude > 0.0 else Vec3(0, 0, 1)
-    minor = normal.cross(major) * float(entity.dxf.ratio)
-    start, end = float(entity.dxf.start_param), float(entity.dxf.end_param)
-    return Conic(np.array([entity.dxf.center.xyz, major.xyz, minor.xyz]), start, _span(end - start, 2.0 * math.pi))
+def _ellipse(_raw: Any, numbers: dict[str, Any], index: int, into: Gathered) -> str:
+    centre, major = Vec3(numbers["center"]), Vec3(numbers["major_axis"])
+    normal = Vec3(numbers.get("extrusion", (0, 0, 1)))
+    normal = normal if normal.magnitude > 0.0 else Vec3(0, 0, 1)
+    ratio, across = float(numbers["ratio"]), normal.cross(major)
+    if not (major.magnitude > 0.0 and across.magnitude > 0.0):
+        raise ValueError("its major axis is no direction in its plane")
+    if ratio == 0.0:
+        raise ValueError("its axes have the ratio 0")
+    minor = across.normalize(major.magnitude * ratio)
+    start, end = float(numbers.get("start_param", 0.0)), float(numbers.get("end_param", 2.0 * math.pi))
+    span = _span(end - start, 2.0 * math.pi)
+    into.conics.extend((*centre.xyz, *major.xyz, *minor.xyz, start, span))
+    into.conic_of.append(index)
+    return ""
 
 
-def _lwpolyline(entity: Any) -> Shape | str:
-    vertices = np.array([(x, y, bulge) for x, y, bulge in entity.get_points("xyb")]).reshape(-1, 3)
-    points = vertices.copy()
-    points[:, 2] = float(entity.dxf.elevation)
-    return _polyline(points, vertices[:, 2], closed=bool(entity.closed))
+def _lwpolyline(raw: Any, numbers: dict[str, Any], index: int, into: Gathered) -> str:
+    vertices = raw.lwpoints.values
+    if numbers.get("const_width", 0.0) or vertices[:, 2:4].any():
+        into.wide.append(index)
+    closed = bool(numbers.get("flags", 0) & _CLOSED)
+    return _flat(vertices, float(numbers.get("elevation", 0.0)), numbers, index, into, closed=closed)
 
 
-def _old_polyline(entity: Any) -> Shape | str:
-    if entity.is_polygon_mesh or entity.is_poly_face_mesh:
+def _old_polyline(raw: Any, numbers: dict[str, Any], index: int, into: Gathered) -> str:
+    flags = numbers.get("flags", 0)
+    if flags & _MESHES:
         return _MESH
-    vertices = [vertex for vertex in entity.vertices if not vertex.dxf.flags & _FRAME]
-    points = np.array([vertex.dxf.location.xyz for vertex in vertices]).reshape(-1, 3)
-    bulges = np.array([float(vertex.dxf.get("bulge", 0.0)) for vertex in vertices])
-    if entity.is_3d_polyline:
-        return _polyline(points, np.zeros(len(points)), closed=entity.is_closed)
-    points[:, 2] = entity.dxf.elevation.z
-    return _polyline(points, bulges, closed=entity.is_closed)
+    found = [vertex.dxf.__dict__ for vertex in raw.vertices]
+    found = [vertex for vertex in found if not vertex.get("flags", 0) & _FRAME]
+    closed = bool(flags & _CLOSED)
+    if flags & _SPACE:
+        points = np.array([vertex["location"].xyz for vertex in found]).reshape(-1, 3)
+        return _in_space(points, index, into, closed=closed)
+    get = [(*vertex["location"].xyz[:2], *(vertex.get(name, 0.0) for name in _VERTEX)) for vertex in found]
+    vertices = np.array(get, dtype=np.float64).reshape(-1, 5)
+    if vertices[:, 2:4].any() or numbers.get("default_start_width") or numbers.get("default_end_width"):
+        into.wide.append(index)
+    z = Vec3(numbers.get("elevation", (0, 0, 0))).z
+    return _flat(vertices, z, numbers, index, into, closed=closed)
 
 
-def _polyline(points: Array, bulges: Array, *, closed: bool) -> Shape | str:
+_VERTEX: Final = ("start_width", "end_width", "bulge")
+
+
+def _flat(vertices: Array, z: float, numbers: dict[str, Any], index: int, into: Gathered, *, closed: bool) -> str:
+    """A polyline in a plane of its own."""
+    up = _up(numbers)
+    if up:
+        into.polylines.add(index, vertices, z, up, closed=closed)
+        return ""
+    points = np.column_stack([vertices[:, :2], np.full(len(vertices), z)])
+    return _tilted(points, vertices[:, 4], axes(numbers["extrusion"]), index, into, closed=closed)
+
+
+def _in_space(points: Array, index: int, into: Gathered, *, closed: bool) -> str:
+    """A polyline of lines in the drawing's coordinates."""
+    return _tilted(points, np.zeros(len(points)), np.eye(3), index, into, closed=closed)
+
+
+def _tilted(points: Array, bulges: Array, own: Array, index: int, into: Gathered, *, closed: bool) -> str:
     """A polyline without repeated vertices, (N, 3) and (N,) bulges of the segments that leave them."""
-    after = np.roll(points, -1, axis=0)
-    keep = (points != after).any(axis=1)
+    keep = (points != np.roll(points, -1, axis=0)).any(axis=1)
     if len(points) and not closed:
         keep[-1] = True
     points, bulges = points[keep], bulges[keep]
     if len(points) < 2:
-        return "a polyline of length zero"
-    return Lines(points, bulges if closed else bulges[:-1], closed=closed)
+        return "a POLYLINE of length zero"
+    into.singles.append((index, Lines(points, bulges if closed else bulges[:-1], closed=closed), own))
+    return ""
 
 
-def _spline(entity: Any) -> Shape | str:
-    control = np.array([Vec3(point).xyz for point in entity.control_points]).reshape(-1, 3)
-    weights, knots, degree = np.array(entity.weights, dtype=float), np.array(entity.knots), int(entity.dxf.degree)
-    if not len(control):
-        tangents = [entity.dxf.get("start_tangent"), entity.dxf.get("end_tangent")]
-        fit = [Vec3(point) for point in entity.fit_points]
-        if len(fit) < 2:
-            return "a spline without points"
-        # ezdxf's reading of what CAD programs draw through fit points alone.
-        tool = fit_points_to_cad_cv(fit, [Vec3(tangent) for tangent in tangents] if all(tangents) else None)
-        control = np.array([point.xyz for point in tool.control_points])
-        weights, knots, degree = np.empty(0), np.array(tool.knots()), tool.order - 1
-    return Spline(control, weights if len(weights) else np.ones(len(control)), knots, degree)
+def _spline(raw: Any, numbers: dict[str, Any], index: int, into: Gathered) -> str:
+    control = np.asarray(raw.control_points.values, dtype=np.float64)
+    weights, knots = np.array(raw.weights, dtype=np.float64), np.array(raw.knots, dtype=np.float64)
+    degree = int(numbers.get("degree", 3))
+    closed = bool(numbers.get("flags", 0) & (_CLOSED | 2))
+    if len(control):
+        control, weights, knots = splines.regular(control, weights, knots, degree, closed=closed)
+    else:
+        fit = np.asarray(raw.fit_points.values, dtype=np.float64)
+        tangents = [numbers.get(name) for name in ("start_tangent", "end_tangent")]
+        ends = [None if tangent is None else np.array(Vec3(tangent).xyz) for tangent in tangents]
+        found = splines.through(fit, ends[0], ends[1], closed=closed)
+        if found is None:
+            return "a SPLINE of length zero" if len(fit) else "a spline without points"
+        control, knots = found
+        weights, degree = np.ones(len(control)), 3
+        into.guessed.append(index)
+    into.singles.append((index, Spline(control, weights, knots, degree), np.eye(3)))
+    return ""
 
 
-_READERS: Final[dict[str, Callable[[Any], Shape | str]]] = {
+_READERS: Final[dict[str, Callable[[Any, dict[str, Any], int, Gathered], str]]] = {
     "LINE": _line,
     "CIRCLE": _circle,
     "ARC": _arc,

@@ -60,6 +60,7 @@ def read_drawing(
     extents = _extents(found)
     findings = [
         *loaded.findings,
+        *found.findings,
         *scale.findings(chosen, (extents[2] - extents[0], extents[3] - extents[1]), header),
         *joined.findings,
         *_nothing_to_machine(found, joined),

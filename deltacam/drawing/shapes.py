@@ -1,6 +1,7 @@
 """What the entities of a DXF file draw, as exact shapes in space, and their curves in the sheet plane.
 
-A shape is in the entity's own coordinates. A matrix, (4, 4), takes it to the sheet: [x y z 1] @ matrix, metres.
+A shape is in the entity's own coordinates. A matrix, (3, 3), takes it to the directions of the sheet: [x y z] @ matrix,
+metres. Circles, arcs and most polylines never come here: they are traced many at once.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from deltacam.drawing import splines
+from deltacam.drawing.traces import Trace
 from deltacam.geometry import biarc
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Curve, readonly
@@ -19,7 +21,7 @@ from deltacam.model import Array, Curve, readonly
 FIT: Final = 0.5e-6
 """How far, m, the arcs that stand for an ellipse or a spline may lie from it where the fit samples it."""
 
-_ROUND: Final = 1e-9
+ROUND: Final = 1e-9
 """An ellipse whose radii differ by less, m, is a circle."""
 
 
@@ -40,24 +42,6 @@ class Lines:
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", readonly(self.points, columns=3))
         object.__setattr__(self, "bulges", readonly(self.bulges))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Conic:
-    """A stretch of the ellipse centre + u cos t + v sin t, from t = ``start`` to ``start + span``.
-
-    Attributes:
-        frame: (3, 3): centre, u and v.
-        start: rad.
-        span: rad, 0 < span <= 2 pi.
-    """
-
-    frame: Array
-    start: float = 0.0
-    span: float = 2.0 * math.pi
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "frame", readonly(self.frame, columns=3))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,66 +66,54 @@ class Spline:
         object.__setattr__(self, "knots", readonly(self.knots))
 
 
-Shape = Lines | Conic | Spline
+Shape = Lines | Spline
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Trace:
-    """A shape in the sheet plane.
-
-    Attributes:
-        curve: m; None where the shape is a single point.
-        heights: the lowest and the highest z that it reaches, m.
-        error: largest distance of the curve from the shape, m.
-    """
-
-    curve: Curve | None
-    heights: tuple[float, float]
-    error: float = 0.0
-
-
-def trace(shape: Shape, matrix: Array) -> Trace:
-    """The curve of a shape in the sheet plane; lines, arcs and circles stay exact.
+def trace(shape: Shape, matrix: Array) -> Trace | None:
+    """The curve of a shape in the sheet plane; None where the shape is a single point.
 
     Args:
         shape: in its own coordinates.
-        matrix: (4, 4) to the sheet, m.
+        matrix: (3, 3) to the directions of the sheet, m.
 
     Raises:
-        ValueError: a spline that is not defined, or so wild that it would need too many arcs.
+        ValueError: numbers that make no shape, or one so wild that it would need too many arcs.
     """
     if isinstance(shape, Lines):
         return _trace_lines(shape, matrix)
-    if isinstance(shape, Conic):
-        frame = shape.frame @ matrix[:3, :3]
-        frame[0] += matrix[3, :3]
-        lift = float(np.hypot(frame[1, 2], frame[2, 2]))
-        curve, error = _ellipse(frame[:, :2], shape.start, shape.span)
-        return Trace(curve, (float(frame[0, 2]) - lift, float(frame[0, 2]) + lift), error)
-    control = shape.control @ matrix[:3, :3] + matrix[3, :3]
+    control = shape.control @ matrix
     heights = (float(control[:, 2].min()), float(control[:, 2].max()))
-    spline_curve, error = splines.curve(control[:, :2], shape.weights, shape.knots, shape.degree, FIT)
-    return Trace(spline_curve, heights, error)
+    curve, error = splines.curve(control[:, :2], shape.weights, shape.knots, shape.degree, FIT)
+    return None if curve is None else Trace(curve, heights, error)
+
+
+def trace_ellipse(frame: Array, start: float, span: float, heights: tuple[float, float]) -> Trace:
+    """A stretch of an ellipse.
+
+    Args:
+        frame: (3, 2) m: centre, u and v of centre + u cos t + v sin t.
+        start: the first t, rad.
+        span: how far t runs, rad, 0 < span <= 2 pi.
+        heights: the lowest and the highest z that it may reach, m.
+
+    Raises:
+        ValueError: numbers that make no ellipse.
+    """
+    curve, error = _ellipse(frame, start, span)
+    return Trace(curve, heights, error)
 
 
 def _trace_lines(lines: Lines, matrix: Array) -> Trace:
-    """A polyline: exact where the matrix keeps circles round, else its arcs become parts of ellipses."""
-    points = lines.points @ matrix[:3, :3] + matrix[3, :3]
+    """A polyline whose arcs, if it has any, become parts of ellipses."""
+    points = lines.points @ matrix
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
-    if len(points) < 2:
-        return Trace(None, (low, high))
     plane = Curve(points=lines.points[:, :2], bulges=lines.bulges, closed=lines.closed)
     if not plane.bulges.any():
         return Trace(Curve(points=points[:, :2], bulges=lines.bulges, closed=lines.closed), (low, high))
-    reach = float(curves.lengths(plane).max())
-    lift = reach * float(np.hypot(*matrix[:2, 2]))
-    heights = (low - lift, high + lift)
-    singular = np.linalg.svd(matrix[:2, :2], compute_uv=False)
-    if (singular[0] - singular[1]) * reach > _ROUND:
-        curve, error = _squeezed(plane, matrix[:2, :2], points[:, :2])
-        return Trace(curve, heights, error)
-    bulges = lines.bulges * np.sign(np.linalg.det(matrix[:2, :2]))
-    return Trace(_moderate(Curve(points=points[:, :2], bulges=bulges, closed=lines.closed)), heights)
+    # An arc that is not level reaches beyond the heights of its ends by less than its length.
+    lift = float(curves.lengths(plane).max()) * float(np.hypot(*matrix[:2, 2]))
+    curve, error = _squeezed(plane, matrix[:2, :2], points[:, :2])
+    return Trace(curve, (low - lift, high + lift), error)
 
 
 def _squeezed(plane: Curve, linear: Array, points: Array) -> tuple[Curve, float]:
@@ -182,7 +154,7 @@ def _ellipse(frame: Array, start: float, span: float) -> tuple[Curve, float]:
     """
     centre, u, v = frame
     a, b = np.hypot(*u), np.hypot(*v)
-    if abs(a - b) <= _ROUND and abs(u @ v) <= _ROUND * max(a, b):
+    if abs(a - b) <= ROUND and abs(u @ v) <= ROUND * max(a, b):
         return _arc(centre, u, v, start, span), 0.0
 
     def evaluate(t: Array) -> tuple[Array, Array]:
@@ -208,18 +180,3 @@ def _arc(centre: Array, u: Array, v: Array, start: float, span: float) -> Curve:
         bulges = np.full(pieces, sign * math.tan(span / pieces / 4.0))
     points = centre + np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * v
     return Curve(points=points, bulges=bulges, closed=span >= 2.0 * math.pi)
-
-
-def _moderate(curve: Curve) -> Curve:
-    """The same curve with every arc of more than half a turn split in two."""
-    wide = np.abs(curve.bulges) > 1.0
-    if not wide.any():
-        return curve
-    after = np.flatnonzero(wide)
-    middle, _ = curves.evaluate(curve, after, 0.5 * curves.lengths(curve)[after])
-    bulges = np.where(wide, np.tan(0.5 * np.arctan(curve.bulges)), curve.bulges)
-    return Curve(
-        points=np.insert(curve.points, after + 1, middle, axis=0),
-        bulges=np.insert(bulges, after + 1, bulges[after]),
-        closed=curve.closed,
-    )

@@ -20,8 +20,76 @@ from deltacam.model import Array, Curve
 MAX_DEGREE: Final = 25
 """The highest degree that CAD programs write."""
 
-_SAME: Final = 1e-12
-"""Knots closer than this part of their range are one."""
+_SAME: Final = 1e-9
+"""Knots closer than this part of their range are one; files write ten digits or more."""
+
+
+def regular(control: Array, weights: Array, knots: Array, degree: int, *, closed: bool) -> tuple[Array, Array, Array]:
+    """Control points, weights and knots as files write them, in the one form that ``curve`` takes.
+
+    A spline is what its control points, weights and knots draw from knots[degree] to knots[N], whether it is marked as
+    closed or not: that is what CAD programs show. Three ways of writing the same numbers are known besides: without
+    weights; without the first and the last knot, which have no influence (openNURBS); and, marked as closed, without
+    the first control points once more at the end, but with their knots.
+
+    Args:
+        control: (N, 3).
+        weights: (N,) or (0,).
+        knots: the (N + degree + 1,) of the textbook, or those of the other ways.
+        degree: >= 1.
+        closed: whether it is marked as closed or periodic.
+
+    Raises:
+        ValueError: numbers that make no spline.
+    """
+    if not (np.isfinite(control).all() and np.isfinite(weights).all() and np.isfinite(knots).all()):
+        raise ValueError("its coordinates, weights or knots are not numbers")
+    weights = weights if len(weights) else np.ones(len(control))
+    count = len(control)
+    if closed and 1 <= degree <= count and len(knots) == count + 2 * degree + 1 and len(weights) == count:
+        period = knots[count:] - knots[: 2 * degree + 1]
+        if np.ptp(period) <= _SAME * float(np.ptp(knots)):
+            control, weights = np.concatenate([control, control[:degree]]), np.append(weights, weights[:degree])
+    elif (
+        len(knots) == count + degree - 1 > 2 * degree and knots[0] == knots[degree - 1] and knots[-1] == knots[-degree]
+    ):
+        knots = np.concatenate([knots[:1], knots, knots[-1:]])
+    if len(knots) > 1 and np.diff(knots).min() < 0.0 and np.diff(knots).min() >= -_SAME * float(np.ptp(knots)):
+        knots = np.maximum.accumulate(knots)
+    _check(control, weights, knots, degree)
+    return control, weights, knots
+
+
+def through(fit: Array, start: Array | None, end: Array | None, *, closed: bool) -> tuple[Array, Array] | None:
+    """The cubic spline that CAD programs draw through points: control points (N, 3) and knots; None for one place.
+
+    Its parameter runs with the chords. Where no tangent is given the curvature ends at zero; a closed one is smooth
+    everywhere (stackoverflow.com/a/74863330; ezdxf, ``fit_points_to_cad_cv``).
+
+    Args:
+        fit: (K, 3).
+        start: (3,) direction at the first point, if it is given.
+        end: (3,) direction at the last point.
+        closed: whether it returns to the first point.
+
+    Raises:
+        ValueError: a coordinate that is not a number.
+    """
+    from scipy.interpolate import CubicSpline
+
+    if not np.isfinite(fit).all():
+        raise ValueError("its coordinates are not numbers")
+    if closed and len(fit):
+        fit = np.concatenate([fit, fit[:1]])
+    fit = fit[np.any(np.diff(fit, axis=0, prepend=np.nan) != 0.0, axis=1)]
+    if len(fit) < 2:
+        return None
+    t = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(fit, axis=0), axis=1))])
+    ends = [(2, np.zeros(3)) if tangent is None else (1, tangent / np.linalg.norm(tangent)) for tangent in (start, end)]
+    slope = CubicSpline(t, fit, bc_type="periodic" if closed else tuple(ends))(t, 1)
+    third = np.diff(t)[:, None] / 3.0
+    inner = np.stack([fit[:-1] + third * slope[:-1], fit[1:] - third * slope[1:], fit[1:]], axis=1)
+    return np.concatenate([fit[:1], inner.reshape(-1, 3)]), np.concatenate([t[:1], np.repeat(t, 3), t[-1:]])
 
 
 def curve(control: Array, weights: Array, knots: Array, degree: int, tolerance: float) -> tuple[Curve | None, float]:
