@@ -84,13 +84,13 @@ def _settings(
     **single_values: str | None,
 ) -> dict[str, Any]:
     """What the command line and the user's own defaults say, as the pipeline takes it."""
-    selected = {"layers": layers, "ignored_layers": ignored_layers, "join": join, "accept_loss": accept_loss}
+    selection = options.selection(own, layers=layers, ignored_layers=ignored_layers, join=join, accept_loss=accept_loss)
     return {
         "robot": _robot(robot, own),
         "process": _process(process, own, **single_values),
         "unit": options.unit("--units", units),
         "default_unit": own.units,
-        "selection": options.selection(own, **selected),
+        "selection": selection,
         "at": options.place("--at", at),
         "rotation": options.angle("--rotate", rotate),
     }
