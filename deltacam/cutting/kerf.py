@@ -18,7 +18,7 @@ import shapely
 from deltacam.cutting.trace import Source, trace_ring
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Contour, Curve, Cut, Finding
+from deltacam.model import Array, Contour, Curve, Cut, Finding, Operation
 from deltacam.units import to_mm
 
 FLATTENING: Final = 1e-6
@@ -40,17 +40,18 @@ class KerfResult:
 
 
 def offset(contours: Sequence[Contour], *, kerf: float) -> KerfResult:
-    """Shift every contour by half the kerf to its waste side, so that the part keeps its drawn size.
+    """Shift closed contours that are cut by half the kerf to their waste side, so that the part keeps its drawn size.
 
     The waste is outside an outline and inside a hole. Convex corners are rounded about the drawn corner, as the exact
-    offset is.
+    offset is. What is engraved or open is followed on the line itself; engraving may touch and cross anything.
 
     Args:
-        contours: closed, counter-clockwise, m, none crossing another.
+        contours: m; those that are closed and cut are counter-clockwise, none crossing another.
         kerf: width of the cut, m, >= 0.
 
     Returns:
-        one cut per contour, or several where the kerf splits it, which is reported.
+        one cut per contour, or several where the kerf splits it, which is reported; so is an open line whose slot meets
+        the edge of a part.
 
     Raises:
         InfeasibleError: the kerf swallows a contour, or the cut of one runs into another.
@@ -58,13 +59,17 @@ def offset(contours: Sequence[Contour], *, kerf: float) -> KerfResult:
     results = [_offset_one(contour, kerf) for contour in contours]
     _refuse_swallowed([contour for contour, result in zip(contours, results, strict=True) if not result.cuts], kerf)
     cuts = tuple(cut for result in results for cut in result.cuts)
-    _refuse_collisions(contours, cuts, kerf)
-    return KerfResult(cuts, tuple(finding for result in results for finding in result.findings))
+    closed = [contour for contour in contours if contour.has_kerf]
+    shifted = {contour.number for contour in closed}
+    _refuse_collisions(closed, [cut for cut in cuts if cut.contour in shifted], kerf)
+    slots = [contour for contour in contours if contour.operation is Operation.CUT and not contour.curve.closed]
+    findings = [finding for result in results for finding in result.findings]
+    return KerfResult(cuts, (*findings, *_meeting_edges(slots, closed, kerf)))
 
 
 def _offset_one(contour: Contour, kerf: float) -> KerfResult:
     """The cuts of one contour; none where the kerf swallows it."""
-    if kerf == 0.0:
+    if kerf == 0.0 or not contour.has_kerf:
         return KerfResult((_cut(contour, contour.curve),), ())
     shift = -kerf / 2.0 if contour.is_hole else kerf / 2.0
     points, segment = curves.flatten(contour.curve, FLATTENING)
@@ -98,7 +103,13 @@ def _quad_segments(radius: float) -> int:
 
 
 def _cut(contour: Contour, curve: Curve) -> Cut:
-    return Cut(contour=contour.number, layer=contour.layer, handles=contour.handles, curve=curve)
+    return Cut(
+        contour=contour.number,
+        layer=contour.layer,
+        handles=contour.handles,
+        curve=curve,
+        operation=contour.operation,
+    )
 
 
 def _pieces_finding(contour: Contour, rings: Sequence[shapely.LinearRing], kerf: float) -> tuple[Finding, ...]:
@@ -134,14 +145,38 @@ def _refuse_collisions(contours: Sequence[Contour], cuts: Sequence[Cut], kerf: f
     more = f" (and {len(pairs) - 1} more)" if len(pairs) > 1 else ""
     raise InfeasibleError(
         f"a kerf of {to_mm(kerf):.3g} mm is wider than the gap to {contour.where}, which would be cut into{more}",
-        where=f"contour {cut.contour} (layer {cut.layer}, #{cut.handles[0]}) at {_place(meeting)}",
+        where=f"{cut.where} at {_place(meeting)}",
         hint="use a narrower kerf (--kerf), or move the contours apart; lines shared by two parts must be drawn once",
+    )
+
+
+def _meeting_edges(slots: Sequence[Contour], closed: Sequence[Contour], kerf: float) -> tuple[Finding, ...]:
+    """One finding for all open lines that are cut within half a kerf of a closed contour: they open its edge there."""
+    if not slots or not closed:
+        return ()
+    drawn = np.array([_outline(contour.curve) for contour in closed])
+    lines = np.array([_outline(contour.curve) for contour in slots])
+    slot, edge = shapely.STRtree(drawn).query(lines, predicate="dwithin", distance=kerf / 2.0)
+    if not len(slot):
+        return ()
+    place = shapely.get_coordinates(shapely.shortest_line(lines[slot[0]], drawn[edge[0]]))[1]
+    count = len(set(slot.tolist()))
+    lead = "1 open line that is cut meets" if count == 1 else f"{count} open lines that are cut meet"
+    return (
+        Finding(
+            what=f"{lead} the edge of a part, where a slot of {to_mm(kerf):.3g} mm opens it: "
+            f"{closed[edge[0]].where} at {_place(place)}" + (", and more" if len(slot) > 1 else ""),
+            where=slots[slot[0]].where,
+            hint="if that is not meant, shorten the line, or engrave or ignore open lines",
+            kind="touching",
+            place=(float(place[0]), float(place[1])),
+        ),
     )
 
 
 def _outline(curve: Curve) -> shapely.LineString:
     points, _ = curves.flatten(curve, FLATTENING)
-    return shapely.LineString(np.concatenate([points, points[:1]]))
+    return shapely.LineString(np.concatenate([points, points[:1]]) if curve.closed else points)
 
 
 def _place(point: Array) -> str:

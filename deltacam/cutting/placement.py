@@ -9,7 +9,7 @@ import numpy as np
 
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Contour, Cut, Placement
+from deltacam.model import Array, Contour, Cut, Operation, Placement
 from deltacam.units import METRES_PER, USUAL_SIZES, likely_units, to_mm
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def place(contours: Sequence[Contour], *, robot: Robot, at: tuple[float, float],
     """Put the centre of the drawing's bounding box at ``at`` and turn the drawing about it.
 
     Args:
-        contours: what is cut, sheet frame, m.
+        contours: what is cut or engraved, sheet frame, m.
         robot: gives the height of the sheet.
         at: base frame, m.
         rotation: rad, counter-clockwise.
@@ -65,10 +65,11 @@ def refuse_outside(
     count = sum(one > _OUTSIDE for one in excess)
     low, high = bounding_box(cuts)
     width, depth = to_mm(high[0] - low[0]), to_mm(high[1] - low[1])
+    subject = "the cut" if cut.operation is Operation.CUT else "what is engraved"
     raise InfeasibleError(
-        f"the cut leaves the sheet of robot {robot.name} ({_sheet(robot)}) by {to_mm(excess[worst]):.3f} mm"
+        f"{subject} leaves the sheet of robot {robot.name} ({_sheet(robot)}) by {to_mm(excess[worst]):.3f} mm"
         + (f"; so do {count - 1} other contours" if count > 1 else ""),
-        where=f"contour {cut.contour} (layer {cut.layer}, #{cut.handles[0]})",
+        where=cut.where,
         hint=f"with its kerf the part is {width:.1f} x {depth:.1f} mm, one unit of the drawing taken as {unit}: "
         + (
             _fitting_unit(np.concatenate(placed), robot, (high - low) / metres_per_unit, metres_per_unit)

@@ -61,7 +61,7 @@ class Assignment:
     index: IntArray
 
     def __getitem__(self, entity: int) -> Choice:
-        return self.choices[self.index[entity]]
+        return self.choices[int(self.index[entity])]
 
     def __len__(self) -> int:
         return len(self.index)

@@ -35,19 +35,19 @@ _CONVERGED: Final = 1e-11
 _ROUNDING: Final = 1.0 + 1e-9
 
 
-def pieces(closed: Curve, *, corner: Corner, deviation: float) -> tuple[Curve, ...]:
-    """Split a closed cut at the corners to stop at, and round the others.
+def pieces(cut: Curve, *, corner: Corner, deviation: float) -> tuple[Curve, ...]:
+    """Split a cut at the corners to stop at, and round the others.
 
     Args:
-        closed: the cut, run from ``points[0]`` around and back.
+        cut: run from ``points[0]``, a closed one around and back, an open one to its last point.
         corner: what to do with sharp corners.
         deviation: how far a rounded corner may lie from the drawn one, m, >= 0.
 
     Returns:
-        open curves of tangent lines and arcs, each to be run from rest to rest, together once around.
+        open curves of tangent lines and arcs, each to be run from rest to rest, together the whole cut.
     """
-    curve = _without_slivers(closed)
-    angle = curves.corner_angles(curve)[1:]
+    curve = _without_slivers(cut)
+    angle = curves.corner_angles(curve)[1 if curve.closed else 0 :]
     meets = np.abs(angle) <= _TANGENT
     rounded = ~meets & (np.abs(angle) <= SHARPEST_PASSED) if corner == "stop" else ~meets
     blend = _blend(curve, angle, rounded, deviation)
@@ -80,14 +80,16 @@ class _Blend:
 
 
 def _without_slivers(curve: Curve) -> Curve:
-    """The closed curve without segments under a micrometre; the next segment starts where they did."""
+    """The curve without segments under a micrometre; the next segment starts where they did."""
     kept = (curves.lengths(curve) >= _SHORTEST_SEGMENT) | (np.abs(curve.bulges) > 0.5)
-    if kept.all() or np.count_nonzero(kept) < 2:
+    if kept.all() or np.count_nonzero(kept) < (2 if curve.closed else 1):
         return curve
     first = np.flatnonzero(kept)
     # Each kept segment starts where the one before it ends, so that it takes the room of the slivers in between.
     points = curve.points[np.concatenate([[0], first[:-1] + 1])]
-    return Curve(points=points, bulges=curve.bulges[first])
+    if not curve.closed:
+        points = np.concatenate([points, curve.points[-1:]])
+    return Curve(points=points, bulges=curve.bulges[first], closed=curve.closed)
 
 
 def _blend(curve: Curve, angle: Array, wanted: BoolArray, deviation: float) -> _Blend:
@@ -131,7 +133,7 @@ class _Legs:
     def beside(cls, curve: Curve) -> _Legs:
         start, end = curves.headings(curve)
         curvature = curves.curvatures(curve)
-        return cls(curve.points[1:], end[:-1], curvature[:-1], start[1:], curvature[1:])
+        return cls(curve.starts[1:], end[:-1], curvature[:-1], start[1:], curvature[1:])
 
 
 def _reach(angle: Array, legs: _Legs, length: Array, wanted: BoolArray, deviation: float) -> Array:
@@ -194,7 +196,7 @@ def _left(heading: Array) -> Array:
 
 
 def _assemble(curve: Curve, blend: _Blend) -> Curve:
-    """The open curve once around, with each blended corner replaced by the two ends of its arc."""
+    """The open curve along the whole cut, with each blended corner replaced by the two ends of its arc."""
     count = len(curve.bulges)
     length = curves.lengths(curve)
     head = np.concatenate([[0.0], np.where(blend.found, blend.after, 0.0)])
@@ -210,4 +212,4 @@ def _assemble(curve: Curve, blend: _Blend) -> Curve:
     kept = np.stack([np.ones(count, dtype=bool), arc], axis=1).ravel()
     points = np.stack([starts, ends], axis=1).reshape(-1, 2)[kept]
     all_bulges = np.stack([bulges, arc_bulge], axis=1).ravel()[kept]
-    return Curve(points=np.concatenate([points, curve.points[:1]]), bulges=all_bulges, closed=False)
+    return Curve(points=np.concatenate([points, curve.ends[-1:]]), bulges=all_bulges, closed=False)

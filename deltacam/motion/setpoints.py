@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from deltacam.errors import InfeasibleError
+from deltacam.errors import InfeasibleError, ProcessError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Block, BlockKind, Cut, IntArray, Mode, Placement, Process
+from deltacam.model import Array, Block, BlockKind, Cut, IntArray, Mode, Operation, Placement, Process
 from deltacam.motion.corners import pieces
 from deltacam.motion.parametrize import Limits, TimeLaw, parametrize
 from deltacam.motion.path import Path, from_curve, straight
@@ -68,8 +68,10 @@ def plan_motion(
 ) -> Setpoints:
     """The setpoints that run the cuts in order, from rest at the park position to rest at the park position.
 
+    Every cut begins and ends at rest. Only what is cut is pierced.
+
     Args:
-        cuts: in order, each beginning where it is to be pierced, sheet frame.
+        cuts: in order, each run from its first point, sheet frame.
         robot: the machine.
         process: how to cut.
         placement: of the sheet frame.
@@ -79,22 +81,24 @@ def plan_motion(
 
     Raises:
         InfeasibleError: a move has no time law within the limits, or the tolerance is less than the errors before it.
+        ProcessError: something is to be engraved, and the process does not say how.
         RobotError: a move leaves the reach.
     """
-    power = process.power if mode is Mode.CUT else 0.0
     deviation = _left_for_corners(process.tolerance, drawing_error)
-    rapid, cutting = rapid_limits(robot), cutting_limits(robot, process)
+    rapid = rapid_limits(robot)
+    ways = {operation: _way(operation, robot, process) for operation in {cut.operation for cut in cuts}}
     tape = _Tape(robot, np.array(robot.workspace.park), placement.z)
     tape.rest(BlockKind.RAPID, ticks=1)
     for done, cut in enumerate(cuts):
         progress(done, len(cuts))
         curve = curves.transform(cut.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
         tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
-        pierce = math.ceil(process.pierce_time * robot.controller.rate_hz - _ROUNDING)
-        tape.rest(BlockKind.PIERCE, ticks=pierce, power=power, cut=cut)
+        way = ways[cut.operation]
+        power = way.power if mode is Mode.CUT else 0.0
+        tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
         for piece in pieces(curve, corner=process.corner, deviation=deviation):
             path = from_curve(piece, placement.z)
-            tape.run(path, cutting, BlockKind.CUT, power=power, cut=cut, where=_name(cut))
+            tape.run(path, way.limits, way.kind, power=power, cut=cut, where=cut.where)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
     progress(len(cuts), len(cuts))
@@ -114,7 +118,7 @@ def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Pla
         RobotError: the box leaves the reach.
     """
     box = curves.transform(curves.polygon(corners), rotation=placement.rotation, shift=(placement.x, placement.y))
-    rapid, tracing = rapid_limits(robot), cutting_limits(robot, process)
+    rapid, tracing = rapid_limits(robot), working_limits(robot, process, process.feed)
     tape = _Tape(robot, np.array(robot.workspace.park), placement.z)
     tape.rest(BlockKind.RAPID, ticks=1)
     tape.travel(box.points[0], rapid, where="the way to the frame")
@@ -130,13 +134,47 @@ def rapid_limits(robot: Robot) -> Limits:
     return Limits(speed=robot.tool.max_speed, acceleration=robot.tool.max_acceleration)
 
 
-def cutting_limits(robot: Robot, process: Process) -> Limits:
-    """The limits of a cut."""
+def working_limits(robot: Robot, process: Process, feed: float) -> Limits:
+    """The limits of a cut or of engraving at ``feed`` m/s."""
     return Limits(
-        speed=min(robot.tool.max_speed, process.feed),
+        speed=min(robot.tool.max_speed, feed),
         acceleration=robot.tool.max_acceleration,
         chord=process.chord_tolerance,
     )
+
+
+def engraving(process: Process) -> tuple[float, float]:
+    """The feed, m/s, and the power of engraving.
+
+    Raises:
+        ProcessError: the process does not say them.
+    """
+    if process.engrave_feed is None or process.engrave_power is None:
+        raise ProcessError(
+            "the drawing has lines to engrave, and the process does not say how",
+            where=f"process {process.name}",
+            hint="add a section [engrave] with feed_m_min and power to the process file, or say with --ignore-layer or "
+            "with [[operations]] in the process file that these lines are not engraved",
+        )
+    return process.engrave_feed, process.engrave_power
+
+
+class _Way(NamedTuple):
+    """How a cut is run: the kind of its blocks, its limits, its power, and for how many ticks it is pierced before."""
+
+    kind: BlockKind
+    limits: Limits
+    power: float
+    pierce: int
+
+
+def _way(operation: Operation, robot: Robot, process: Process) -> _Way:
+    """How cuts of an operation are run."""
+    if operation is Operation.ENGRAVE:
+        feed, power = engraving(process)
+        return _Way(BlockKind.ENGRAVE, working_limits(robot, process, feed), power, 0)
+    pierce = math.ceil(process.pierce_time * robot.controller.rate_hz - _ROUNDING)
+    return _Way(BlockKind.CUT, working_limits(robot, process, process.feed), process.power, pierce)
 
 
 def _left_for_corners(tolerance: float, drawing_error: float) -> float:
@@ -151,10 +189,6 @@ def _left_for_corners(tolerance: float, drawing_error: float) -> float:
             "from ellipses and from ends that do not quite meet",
         )
     return max(0.0, left)
-
-
-def _name(cut: Cut) -> str:
-    return f"contour {cut.contour} (layer {cut.layer}, #{cut.handles[0]})"
 
 
 @dataclass(slots=True, eq=False)
