@@ -84,8 +84,8 @@ def _written(places: IntArray, bulges: Array, curve: IntArray, closed: BoolArray
     """One text per curve."""
     steps = places[_next(curve)] - places
     chord = np.hypot(*steps.T)
-    with np.errstate(divide="ignore"):
-        radius = chord * (1.0 + bulges**2) / (4.0 * np.abs(bulges))
+    rise = 4.0 * np.abs(bulges)
+    radius = np.divide(chord * (1.0 + bulges**2), rise, out=np.zeros_like(chord), where=rise > 0.0)
     first = np.flatnonzero(np.diff(curve, prepend=-1))
     last = np.append(first[1:], len(curve)) - 1
     rows = list(zip(steps.tolist(), bulges.tolist(), radius.tolist(), strict=True))

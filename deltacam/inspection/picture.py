@@ -235,7 +235,7 @@ def _footer(drawing: Drawing, measured: Measured, styles: Sequence[LineStyle], v
 def _legend(drawing: Drawing, measured: Measured, styles: Sequence[LineStyle]) -> list[tuple[str, str]]:
     """The key and the label of each kind of line and mark that the picture holds."""
     lines = Counter(each.name for each in styles)
-    lines[style.REPEATED.name] = sum(contour.number in _repeated(drawing) for contour in measured.contours)
+    lines[style.REPEATED.name] = len(_repeated(drawing))
     marks = Counter(style.mark_style(finding.kind).name for finding in drawing.findings if finding.place is not None)
     found = [
         (f'<path class="{each.name}" d="M0 0h28"/>', f"{each.label} {lines[each.name]}")
