@@ -25,7 +25,15 @@ MAX_PIECES: Final = 50_000
 _ROUNDS: Final = 48
 _SAMPLES: Final = 12
 _CHECK_SAMPLES: Final = 41
+_CHECKS: Final = 5
+"""How often stretches that the samples of the check show to be too far away are divided."""
 _MERGE: Final = 1e-8
+_SINGLE: Final = 1e-9
+"""A stretch is one line or arc where its samples lie within this, m, and this part of its chord times ``_STEADY``."""
+_STEADY: Final = 100.0
+_HALF: Final = 0.49 * np.pi
+"""Half the angle of the longest arc that is recognised at once."""
+
 _WIDEST: Final = np.pi / 3.0
 
 
@@ -40,7 +48,8 @@ class _Biarcs:
 def fit(evaluate: Evaluate, parameters: Array, tolerance: float) -> tuple[Curve, float]:
     """An open, tangent-continuous curve of lines and arcs along a smooth curve, and its largest distance from it, m.
 
-    Straight and circular stretches become single lines and arcs of at most half a turn.
+    Straight and circular stretches become single lines and arcs of at most half a turn, exactly where they are
+    straight or circular from one of the parameters to the next.
 
     Args:
         evaluate: the curve; smooth between the first and the last parameter.
@@ -51,32 +60,46 @@ def fit(evaluate: Evaluate, parameters: Array, tolerance: float) -> tuple[Curve,
     Raises:
         ValueError: a place that is not finite, more than ``MAX_PIECES`` pieces, or a curve too wild for the samples.
     """
-    low, high = np.asarray(parameters[:-1], dtype=float), np.asarray(parameters[1:], dtype=float)
-    done: list[tuple[Array, Array, _Biarcs]] = []
+    parameters = np.asarray(parameters, dtype=float)
+    for _ in range(_CHECKS):
+        low, high, biarcs = _cover(evaluate, parameters, tolerance)
+        samples, _ = _sample(evaluate, low, high, _CHECK_SAMPLES)
+        apart = _distances(biarcs, samples).max(axis=1)
+        bad = apart > tolerance
+        if not bad.any():
+            break
+        shares = np.linspace(0.0, 1.0, 5)[1:4, None]
+        inner = low[bad] + shares * (high[bad] - low[bad])
+        parameters = np.unique(np.concatenate([low, high[-1:], inner.ravel()]))
+    error = float(apart.max())
+    if error > 2.0 * tolerance:
+        raise ValueError("it winds too fast between two samples to be followed")
+    places = np.concatenate([biarcs.points[:, :2].reshape(-1, 2), biarcs.points[-1:, 2]])
+    curve, moved = merge(Curve(points=places, bulges=biarcs.bulges.ravel(), closed=False))
+    return curve, error + moved
+
+
+def _cover(evaluate: Evaluate, parameters: Array, tolerance: float) -> tuple[Array, Array, _Biarcs]:
+    """Intervals (N,) and (N,) that follow each other, and the biarc of each; 12 samples lie within the tolerance."""
+    low, high = parameters[:-1], parameters[1:]
+    biarcs, good = _single(evaluate, low, high)
+    done = [(low[good], high[good], biarcs.points[good], biarcs.bulges[good])]
+    low, high = low[~good], high[~good]
     for _ in range(_ROUNDS):
-        biarcs, good = _try(evaluate, low, high, tolerance)
-        done.append((low[good], high[good], _Biarcs(biarcs.points[good], biarcs.bulges[good])))
-        low, high = low[~good], high[~good]
         if not len(low):
             break
+        biarcs, good = _try(evaluate, low, high, tolerance)
+        done.append((low[good], high[good], biarcs.points[good], biarcs.bulges[good]))
+        low, high = low[~good], high[~good]
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
         if len(low) + sum(len(piece[0]) for piece in done) > MAX_PIECES:
             raise ValueError(f"it needs more than {MAX_PIECES} arcs")
     else:
         raise ValueError("it does not become smooth however closely one looks")
-    order = np.argsort(np.concatenate([piece[0] for piece in done]), kind="stable")
-    low = np.concatenate([piece[0] for piece in done])[order]
-    high = np.concatenate([piece[1] for piece in done])[order]
-    points = np.concatenate([piece[2].points for piece in done])[order]
-    bulges = np.concatenate([piece[2].bulges for piece in done])[order]
-    samples, _ = _sample(evaluate, low, high, _CHECK_SAMPLES)
-    error = float(_distances(_Biarcs(points, bulges), samples).max())
-    if error > 2.0 * tolerance:
-        raise ValueError("it winds too fast between two samples to be followed")
-    places = np.concatenate([points[:, :2].reshape(-1, 2), points[-1:, 2]])
-    curve, moved = merge(Curve(points=places, bulges=bulges.ravel(), closed=False))
-    return curve, error + moved
+    low, high, points, bulges = (np.concatenate(each) for each in zip(*done, strict=True))
+    order = np.argsort(low, kind="stable")
+    return low[order], high[order], _Biarcs(points[order], bulges[order])
 
 
 def merge(curve: Curve) -> tuple[Curve, float]:
@@ -86,7 +109,7 @@ def merge(curve: Curve) -> tuple[Curve, float]:
     """
     reach, turn = curves.lengths(curve), curves.turns(curve)
     heading, _ = curves.headings(curve)
-    kept, angles = [0], []
+    kept, angles, moved = [0], [], 0.0
     while kept[-1] < len(reach):
         i = kept[-1]
         bend = turn[i] / reach[i] if reach[i] > 0.0 else 0.0
@@ -95,14 +118,41 @@ def merge(curve: Curve) -> tuple[Curve, float]:
             walked += reach[j]
             half = 0.5 * bend * walked
             ahead = walked * np.sinc(half / np.pi) * np.array([np.cos(heading[i] + half), np.sin(heading[i] + half)])
-            if np.hypot(*(curve.points[i] + ahead - curve.points[j + 1])) > _MERGE:
+            missed = float(np.hypot(*(curve.points[i] + ahead - curve.points[j + 1])))
+            if missed > _MERGE:
                 break
+            moved = max(moved, 2.0 * missed)
             angle += turn[j]
             j += 1
         kept.append(j)
         angles.append(angle)
     merged = Curve(points=curve.points[kept], bulges=np.tan(0.25 * np.array(angles)), closed=False)
-    return merged, _MERGE if len(angles) < len(reach) else 0.0
+    return merged, moved
+
+
+def _single(evaluate: Evaluate, low: Array, high: Array) -> tuple[_Biarcs, BoolArray]:
+    """The one line or arc of each interval, in two equal halves, and whether the curve runs along it.
+
+    A curve of degree p that meets a circle in more than 2 p places lies on it, so the samples prove what they show.
+    """
+    samples, directions = _sample(evaluate, low, high, _CHECK_SAMPLES)
+    start, middle, end = samples[:, 0], samples[:, _CHECK_SAMPLES // 2], samples[:, -1]
+    chord = end - start
+    size = np.hypot(*chord.T)
+    limit = np.minimum(_SINGLE, _SINGLE * _STEADY * size)
+    # The chords to a third place on an arc enclose half the angle that the arc turns through.
+    half = _angle(middle - start, end - middle)
+    straight = _from_arc(start, end, np.zeros_like(half), samples).max(axis=1) <= limit
+    half = np.where(straight | (np.abs(half) > _HALF), 0.0, half)
+    bulge = np.tan(0.5 * half)
+    near = _from_arc(start, end, bulge, samples).max(axis=1) <= limit
+    # Nowhere does it turn back: its directions are within half the angle of the chord, where it has one.
+    along = np.einsum("nsk,nk->ns", directions, chord)
+    onward = (along >= (np.cos(half) - 1e-6)[:, None] * size[:, None]) | ~directions.any(axis=2)
+    rise = 0.5 * bulge[:, None] * np.stack([chord[:, 1], -chord[:, 0]], axis=1)
+    points = np.stack([start, 0.5 * (start + end) + rise, end], axis=1)
+    quarter = np.tan(0.5 * np.arctan(bulge))
+    return _Biarcs(points, np.stack([quarter, quarter], axis=1)), near & onward.all(axis=1) & (size > 0.0)
 
 
 def _try(evaluate: Evaluate, low: Array, high: Array, tolerance: float) -> tuple[_Biarcs, BoolArray]:
