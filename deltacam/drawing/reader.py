@@ -9,10 +9,11 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from deltacam.drawing import document, entities, operations, remarks, scale
+from deltacam.drawing import document, entities, layers, operations, remarks, scale
 from deltacam.drawing.assemble import Assembled, assemble
 from deltacam.drawing.entities import Drawn
 from deltacam.errors import DrawingError
@@ -55,15 +56,16 @@ def read_drawing(
     paper = _in_paper_space(source)
     if not len(found.curves):
         raise _without_lines(found, paper, path.name)
-    operations.check_patterns(selection, list(dict.fromkeys(entity.layer for entity in found.entities)))
+    table = layers.tabulate(source, found.entities, found.owner)
+    operations.check_patterns(selection, [layer.name for layer in table])
     joined = assemble(found, operations.assign(found.entities, selection), selection.joining)
     extents = _extents(found)
     findings = [
-        *loaded.findings,
-        *found.findings,
+        *(_accepted(finding, selection) for finding in (*loaded.findings, *found.findings)),
         *scale.findings(chosen, (extents[2] - extents[0], extents[3] - extents[1]), header),
         *joined.findings,
         *_nothing_to_machine(found, joined),
+        *remarks.hidden_layers(table),
         *remarks.open_chains(joined.contours),
         *remarks.not_cut(found),
         *remarks.paper_space(paper),
@@ -79,9 +81,10 @@ def read_drawing(
         unit_source=chosen.source,
         contours=tuple(contour for contour in joined.contours if contour.operation is not Operation.IGNORE),
         ignored=tuple(contour for contour in joined.contours if contour.operation is Operation.IGNORE),
-        ledger=_ledger(found, joined),
+        ledger=(*_ledger(found, joined), *loaded.lost),
         findings=tuple(findings),
         conversion_error=joined.error,
+        layers=table,
         extents=extents,
         selection=selection,
     )
@@ -92,6 +95,11 @@ def _extents(found: Drawn) -> tuple[float, float, float, float]:
     boxes = found.curves.bounds()
     low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _accepted(finding: Finding, selection: Selection) -> Finding:
+    """A finding about lost geometry no longer blocks where the user accepts the loss."""
+    return replace(finding, blocks=False) if finding.kind == "lost" and selection.accept_loss else finding
 
 
 def _ledger(found: Drawn, joined: Assembled) -> tuple[LedgerEntry, ...]:
@@ -105,6 +113,8 @@ def _ledger(found: Drawn, joined: Assembled) -> tuple[LedgerEntry, ...]:
             outcome, reason = joined.notes[i]
         elif number is not None:
             outcome, reason = done[operation[number]], ""
+        elif entity.lost:
+            outcome, reason = Outcome.LOST, entity.reason
         else:
             outcome, reason = Outcome.MERGED if entity.is_insert else Outcome.IGNORED, entity.reason
         entries.append(LedgerEntry(entity.handle, entity.kind, entity.layer, entity.block, outcome, reason, number))
@@ -132,7 +142,8 @@ def _without_lines(found: Drawn, paper: int, file: str) -> DrawingError:
     kinds = Counter(entity.kind for entity in found.entities if not entity.is_insert)
     held = [f"{count} {kind}" for kind, count in kinds.items()]
     held += [f"{remarks.counted(paper, 'entity', 'entities', verb=False)} in paper space"] if paper else []
-    what = f"nothing to cut: {', '.join(held) or 'it holds no entities'}"
+    lost = next((entity.reason for entity in found.entities if entity.lost), "")
+    what = f"nothing to cut: {', '.join(held) or 'it holds no entities'}{f' ({lost})' if lost else ''}"
     hint = "draw the part as closed outlines in the modelspace" if held else "export the drawing again"
     return DrawingError(what, where=file, hint=hint)
 

@@ -50,7 +50,7 @@ def hidden_layers(layers: Iterable[Layer]) -> list[Finding]:
 
 def not_cut(found: Drawn) -> list[Finding]:
     """One finding per kind and layer of entities that draw no line."""
-    left = [entity for entity in found.without_curve() if not entity.is_insert]
+    left = [entity for entity in found.without_curve() if not entity.is_insert and not entity.lost]
     kinds: dict[tuple[str, str], list[Entity]] = {}
     for entity in left:
         kinds.setdefault((entity.kind, entity.reason), []).append(entity)
