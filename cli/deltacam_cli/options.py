@@ -95,6 +95,20 @@ def selection(
     )
 
 
+def load(read: Callable[[str], T], given: str | None, own: str | None, built_in: str, where: str) -> T:
+    """What the command line names, else what the user's own defaults name (``where``), else what is built in.
+
+    Raises:
+        DeltacamError: what is named cannot be read; where it has no place of its own, names ``where``.
+    """
+    if given is not None or own is None:
+        return read(built_in if given is None else given)
+    try:
+        return read(own)
+    except DeltacamError as problem:
+        raise DeltacamError(problem.what, where=problem.where or where, hint=problem.hint) from problem
+
+
 def length(option: str, text: str | None) -> float | None:
     """The length in metres; a bare number is millimetres.
 

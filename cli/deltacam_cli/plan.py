@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from deltacam.errors import DeltacamError
 from deltacam_cli import options
 from deltacam_cli.main import EXIT_FAILED, LONGEST_MESSAGE, show_json
 from deltacam_cli.progress import ProgressLine
@@ -19,8 +17,6 @@ if TYPE_CHECKING:
     from deltacam.model import Process
     from deltacam.pipeline import Outputs, Planned
     from deltacam.robot.robot import Robot
-
-T = TypeVar("T")
 
 
 @click.command("plan", no_args_is_help=True)
@@ -100,7 +96,7 @@ def _robot(name: str | None, own: Defaults) -> Robot:
     from deltacam.pipeline import DEFAULT_ROBOT
     from deltacam.robot.reader import load_robot
 
-    return _load(load_robot, name, own.robot, DEFAULT_ROBOT, f"{own.file}: robot")
+    return options.load(load_robot, name, own.robot, DEFAULT_ROBOT, f"{own.file}: robot")
 
 
 def _process(
@@ -115,18 +111,8 @@ def _process(
         "tolerance": options.length("--tolerance", tolerance),
         "corner": corner,
     }
-    process = _load(load_process, name, own.process, DEFAULT_PROCESS, f"{own.file}: process")
+    process = options.load(load_process, name, own.process, DEFAULT_PROCESS, f"{own.file}: process")
     return replace(process, **{key: value for key, value in values.items() if value is not None})
-
-
-def _load(load: Callable[[str], T], given: str | None, own: str | None, built_in: str, where: str) -> T:
-    """What the command line names, else what the user's own defaults name (``where``), else what is built in."""
-    if given is not None or own is None:
-        return load(built_in if given is None else given)
-    try:
-        return load(own)
-    except DeltacamError as problem:
-        raise DeltacamError(problem.what, where=problem.where or where, hint=problem.hint) from problem
 
 
 def _show(planned: Planned, outputs: Outputs, own: Defaults, *, as_json: bool) -> None:
