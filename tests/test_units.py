@@ -56,6 +56,7 @@ def test_a_unit_is_known_in_any_case_and_an_unknown_one_lists_them_all() -> None
         (843.17, 841.89, "pt"),  # a page of an Illustrator drawing
         (595.276, 841.89, "pt"),
         (792.0, 612.0, "pt"),
+        (840.5, 300.0, "mm"),
         (612.0, 300.0, "mm"),  # one side alone is a length like any other
         (0.3, 0.2, "m"),
         (2500.0, 1250.0, "mm"),  # a whole sheet
@@ -65,6 +66,11 @@ def test_a_unit_is_known_in_any_case_and_an_unknown_one_lists_them_all() -> None
 )
 def test_the_likeliest_unit_makes_the_part_a_usual_size(width: float, height: float, first: str) -> None:
     assert likely_units(width, height)[0] == first
+
+
+def test_a_rare_unit_is_proposed_only_where_no_other_one_would_do() -> None:
+    assert likely_units(1200.0, 500.0) == ("mm",)
+    assert likely_units(20000.0, 500.0) == ("mil", "um")
 
 
 @given(st.floats(0.0, 1e12), st.floats(0.0, 1e12))

@@ -10,7 +10,7 @@ import numpy as np
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Contour, Cut, Operation, Placement
-from deltacam.units import METRES_PER, USUAL_SIZES, likely_units, to_mm
+from deltacam.units import METRES_PER, likely_units, to_mm
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
@@ -99,7 +99,7 @@ def _fitting_unit(points: Array, robot: Robot, drawn: Array, metres_per_unit: fl
     for name in likely_units(*drawn):
         factor = METRES_PER[name] / metres_per_unit
         fits = robot.workspace.excess(centre + factor * (points - centre)).max() <= _OUTSIDE
-        if fits and max(drawn) * METRES_PER[name] >= USUAL_SIZES[0]:
+        if fits:
             width, depth = to_mm(METRES_PER[name]) * drawn
             size = f"in {name} it would be {width:.1f} x {depth:.1f} mm and fit"
             return f"{size}: --units {name}, or take a larger robot (--robot) if the unit is right"

@@ -52,8 +52,6 @@ _IN_FEET: Final = (3, 4)  # engineering and architectural
 _LARGE: Final = 60.0 * METRES_PER["in"]
 """Of real files whose unit is larger than a millimetre, those with larger parts were drawn in millimetres."""
 
-_MOST_PROPOSALS: Final = 3
-
 
 @dataclass(frozen=True, slots=True)
 class Header:
@@ -203,7 +201,7 @@ def _surprising(scale: Scale, drawn: tuple[float, float]) -> tuple[Finding, ...]
 def _doubt(scale: Scale, drawn: tuple[float, float], limit: str, kind: str, *, blocks: bool) -> Finding:
     """The size, and what it would be in the units that would make it a usual one."""
     what = f"the drawing is {_in_mm(drawn, scale.metres)} as its unit is {scale.name} ({scale.source}){limit}"
-    likely = [unit for unit in likely_units(*drawn) if unit != scale.name][:_MOST_PROPOSALS]
+    likely = [unit for unit in likely_units(*drawn) if unit != scale.name]
     sizes = ", ".join(f"{_in_mm(drawn, METRES_PER[unit])} if it were {_word(unit)}" for unit in likely)
     what += f"; it would be {sizes}" if likely else ""
     keep = f"--units {scale.name} if the size is right" if blocks and scale.name in METRES_PER else ""

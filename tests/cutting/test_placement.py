@@ -72,7 +72,7 @@ def test_a_part_that_would_fit_in_another_unit_is_refused_with_that_unit(
     [
         (500.0, 300.0, 1e-3, (0.0, 0.0)),  # only smaller units than mm would do
         (1.0, 1000.0, 25.4e-3, (0.0, 0.0)),  # does not fit in mm either
-        (0.2, 0.1, 1.0, (0.1, 0.0)),  # the place is wrong, not the size
+        (10.0, 4.0, 25.4e-3, (0.1, 0.0)),  # the place is wrong, not the size
     ],
 )
 def test_no_unit_is_named_that_does_not_help(

@@ -1,6 +1,7 @@
 """The unit of a drawing: who states it, and what is said where nobody does or where it cannot be right."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import ezdxf
 import pytest
@@ -233,3 +234,8 @@ def test_an_exact_factor_leaves_nothing_to_say() -> None:
 def test_only_what_the_file_itself_says_is_its_header(name: str, header: Header) -> None:
     path = FILES / f"{name}.dxf"
     assert scale.read_header(ezdxf.readfile(path), path.read_bytes()) == header
+
+
+def test_a_header_with_text_in_place_of_a_number_says_nothing() -> None:
+    document = SimpleNamespace(header={"$INSUNITS": "4", "$MEASUREMENT": (1.0, 2.0), "$LUNITS": 2})
+    assert scale.read_header(document, b"$INSUNITS $MEASUREMENT $LUNITS") == Header(None, None, 2)
