@@ -19,7 +19,7 @@ from deltacam.cutting import kerf, order, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
 from deltacam.drawing.reader import read_drawing
 from deltacam.errors import ProgramError
-from deltacam.model import EVERYTHING, Cut, Drawing, Finding, Mode, Placement, Process, Report, Selection
+from deltacam.model import EVERYTHING, Cut, Drawing, Finding, Mode, Operation, Placement, Process, Report, Selection
 from deltacam.motion import setpoints
 from deltacam.program import csv
 from deltacam.program.atomic import replace_when_done, write_whole
@@ -188,7 +188,10 @@ def verify(
     program = program if isinstance(program, Program) else read_program(program)
     if robot is not None and not isinstance(robot, Robot):
         robot = load_robot(robot)
-    part = None if drawing is None else read_drawing(drawing, metres_per_unit=program.drawing.metres_per_unit)
+    part = None
+    if drawing is not None:
+        scale = program.drawing.metres_per_unit
+        part = read_drawing(drawing, metres_per_unit=scale, selection=program.selection)
     return verification.verify(program, drawing=part, robot=robot)
 
 
@@ -202,6 +205,8 @@ def _program(
     progress: Progress,
 ) -> tuple[Program, tuple[Finding, ...]]:
     """The program of a drawing, and what a person should know about it."""
+    if any(contour.operation is Operation.ENGRAVE for contour in part.contours):
+        setpoints.engraving(process)  # refuses now rather than after everything else
     where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
     progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
@@ -212,12 +217,11 @@ def _program(
         moves = _frame(shifted.cuts, robot, process, where)
     else:
         moves = _cutting(part, shifted.cuts, robot, process, where, mode, progress)
-    ref = DrawingRef(file=part.file, sha256=part.sha256, metres_per_unit=part.metres_per_unit)
     program = Program(
         robot=robot,
         placement=where,
         process=process,
-        drawing=ref,
+        drawing=DrawingRef.of(part),
         mode=mode,
         blocks=moves.blocks,
         q=moves.q,

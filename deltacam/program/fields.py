@@ -37,7 +37,8 @@ class Fields:
         missing = [key for key in keys if key not in values]
         unknown = sorted(key[:40] for key in values if key not in keys)[:5]
         if missing:
-            raise self.problem(f"missing {', '.join(missing)}")
+            hint = "the file may be from an older deltacam; plan the drawing again"
+            raise self.problem(f"missing {', '.join(missing)}", hint=hint)
         if unknown:
             hint = "the file may be from a newer deltacam, which gives these keys a meaning"
             raise self.problem(f"unknown {', '.join(map(repr, unknown))}", hint=hint)
@@ -77,6 +78,13 @@ class Fields:
         if not low <= value <= high:  # true of nan; before float(), which may overflow
             raise self.problem(f"{key} is outside {low:g} to {high:g}")
         return float(value)
+
+    def flag(self, key: str) -> bool:
+        """Whether ``key`` is true."""
+        value = self._values[key]
+        if not isinstance(value, bool):
+            raise self.problem(f"{key} is not true or false")
+        return value
 
     def whole(self, key: str, low: int, high: int = MAX_WHOLE) -> int:
         """The whole number ``key``, from ``low`` to ``high``."""

@@ -7,7 +7,7 @@ from dataclasses import asdict, fields
 from typing import Any, Final, NamedTuple, cast, get_args
 
 from deltacam.errors import ProgramError, RobotError
-from deltacam.model import Block, BlockKind, Corner, Mode, Placement, Process
+from deltacam.model import Block, BlockKind, Corner, Mode, Operation, Placement, Process, Rule
 from deltacam.program.fields import MAX_WHOLE, Fields
 from deltacam.program.program import DrawingRef, Program
 from deltacam.robot.meta import from_meta as robot_from_meta
@@ -17,6 +17,8 @@ from deltacam.robot.robot import Robot
 KEYS: Final = ("blocks", "drawing", "mode", "placement", "process", "rate_hz", "robot", "rows", "sha256")
 _BLOCK_KEYS: Final = tuple(field.name for field in fields(Block))
 _PROCESS_KEYS: Final = tuple(field.name for field in fields(Process))
+_RULE_KEYS: Final = tuple(field.name for field in fields(Rule))
+_DRAWING_KEYS: Final = ("accept_loss", "file", "ignored_layers", "joining_m", "layers", "metres_per_unit", "sha256")
 _PLACEMENT_KEYS: Final = ("rotation_rad", "x_m", "y_m", "z_m")
 _LARGEST: Final = 1e4  # m, s or m/s: far beyond any machine, and far from where a product could overflow
 
@@ -40,7 +42,7 @@ def to_meta(program: Program, *, sha256: str) -> dict[str, Any]:
     placement = program.placement
     return {
         "blocks": [_block_to_meta(block) for block in program.blocks],
-        "drawing": asdict(program.drawing),
+        "drawing": _drawing_to_meta(program.drawing),
         "mode": program.mode.value,
         "placement": {
             "rotation_rad": placement.rotation,
@@ -71,7 +73,7 @@ def from_meta(values: object, where: str) -> Meta:
         robot=_robot(top),
         placement=_placement(top.section("placement", _PLACEMENT_KEYS)),
         process=_process(top.section("process", _PROCESS_KEYS)),
-        drawing=_drawing(top.section("drawing", ("file", "metres_per_unit", "sha256"))),
+        drawing=_drawing(top.section("drawing", _DRAWING_KEYS)),
         mode=top.choice("mode", Mode),
         blocks=_blocks(top),
         rate_hz=top.number("rate_hz", 0.0, 1e9),
@@ -89,6 +91,18 @@ def _block_to_meta(block: Block) -> dict[str, Any]:
         "kind": block.kind.value,
         "last": block.last,
         "layer": block.layer,
+    }
+
+
+def _drawing_to_meta(drawing: DrawingRef) -> dict[str, Any]:
+    return {
+        "accept_loss": drawing.accept_loss,
+        "file": drawing.file,
+        "ignored_layers": list(drawing.ignored_layers),
+        "joining_m": drawing.joining,
+        "layers": list(drawing.layers),
+        "metres_per_unit": drawing.metres_per_unit,
+        "sha256": drawing.sha256,
     }
 
 
@@ -129,12 +143,39 @@ def _process(found: Fields) -> Process:
         chord_tolerance=found.number("chord_tolerance", 1e-9, 1.0),
         corner=cast("Corner", corner),
         gas=found.text("gas", empty=True),
+        rules=_rules(found),
+        open=found.choice("open", Operation),
+        engrave_feed=None if found.raw("engrave_feed") is None else found.number("engrave_feed", 1e-9, _LARGEST),
+        engrave_power=None if found.raw("engrave_power") is None else found.number("engrave_power", 0.0, 1.0),
     )
 
 
+def _rules(process: Fields) -> tuple[Rule, ...]:
+    found = []
+    for index, values in enumerate(process.items("rules")):
+        rule = Fields(values, f"{process.where}, rule {index}", _RULE_KEYS)
+        found.append(
+            Rule(
+                operation=rule.choice("operation", Operation),
+                layer=None if rule.raw("layer") is None else rule.text("layer"),
+                color=None if rule.raw("color") is None else rule.whole("color", 1, 255),
+                linetype=None if rule.raw("linetype") is None else rule.text("linetype"),
+                open=rule.choice("open", Operation),
+            )
+        )
+    return tuple(found)
+
+
 def _drawing(found: Fields) -> DrawingRef:
-    scale = found.number("metres_per_unit", 1e-12, 1e6)
-    return DrawingRef(file=found.text("file"), sha256=found.text("sha256", empty=True), metres_per_unit=scale)
+    return DrawingRef(
+        file=found.text("file"),
+        sha256=found.text("sha256", empty=True),
+        metres_per_unit=found.number("metres_per_unit", 1e-12, 1e6),
+        joining=found.number("joining_m", 0.0, 1.0),
+        layers=found.texts("layers"),
+        ignored_layers=found.texts("ignored_layers"),
+        accept_loss=found.flag("accept_loss"),
+    )
 
 
 def _blocks(top: Fields) -> tuple[Block, ...]:

@@ -8,7 +8,18 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from deltacam.model import Array, Block, IntArray, Mode, Placement, Process, readonly
+from deltacam.model import (
+    DEFAULT_JOINING,
+    Array,
+    Block,
+    Drawing,
+    IntArray,
+    Mode,
+    Placement,
+    Process,
+    Selection,
+    readonly,
+)
 from deltacam.robot.robot import Robot
 
 TICK_COLUMN: Final = "tick column: "
@@ -20,17 +31,39 @@ MAX_ANGLE: Final = 1e3
 
 @dataclass(frozen=True, slots=True)
 class DrawingRef:
-    """Which drawing a program was planned from.
+    """Which drawing a program was planned from, and how it was read; the rules are those of the process.
 
     Attributes:
         file: the drawing's name without its folder.
         sha256: of the drawing's bytes, hexadecimal.
         metres_per_unit: the scale that was applied to the drawing's numbers.
+        joining: largest distance between ends that were joined, m.
+        layers: patterns; where there are any, entities on other layers were ignored.
+        ignored_layers: patterns; entities on these layers were ignored.
+        accept_loss: whether it was planned although parts of a damaged file could not be read.
     """
 
     file: str
     sha256: str
     metres_per_unit: float
+    joining: float = DEFAULT_JOINING
+    layers: tuple[str, ...] = ()
+    ignored_layers: tuple[str, ...] = ()
+    accept_loss: bool = False
+
+    @classmethod
+    def of(cls, drawing: Drawing) -> DrawingRef:
+        """The reference to a drawing as it was read."""
+        selection = drawing.selection
+        return cls(
+            file=drawing.file,
+            sha256=drawing.sha256,
+            metres_per_unit=drawing.metres_per_unit,
+            joining=selection.joining,
+            layers=selection.layers,
+            ignored_layers=selection.ignored_layers,
+            accept_loss=selection.accept_loss,
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,6 +110,18 @@ class Program:
             raise ValueError(f"{len(self.q)} setpoints, {len(self.power)} powers and {len(self.block)} block indices")
         if np.abs(self.q).max() > MAX_ANGLE:
             raise ValueError(f"a joint angle is {np.abs(self.q).max():.6g} rad; at most {MAX_ANGLE:g} is possible")
+
+    @property
+    def selection(self) -> Selection:
+        """How the drawing was read, and is to be read again for a check."""
+        return Selection(
+            rules=self.process.rules,
+            open=self.process.open,
+            layers=self.drawing.layers,
+            ignored_layers=self.drawing.ignored_layers,
+            joining=self.drawing.joining,
+            accept_loss=self.drawing.accept_loss,
+        )
 
     @property
     def rate_hz(self) -> float:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from deltacam.model import Block, BlockKind, Mode, Placement, Process
+from deltacam.model import Block, BlockKind, Mode, Operation, Placement, Process, Rule
 from deltacam.program.program import DrawingRef, Program
 from deltacam.robot.dimensions import DeltaGeometry
 from deltacam.robot.robot import JointLimits, Robot, ToolRating
@@ -28,18 +28,33 @@ PROCESS = Process(
     feed=0.1,
     power=0.85,
     pierce_time=0.1,
+    rules=(
+        Rule(Operation.ENGRAVE, layer="*GRAV*", color=1, linetype="DASHED", open=Operation.CUT),
+        Rule(Operation.IGNORE),
+    ),
+    open=Operation.ENGRAVE,
+    engrave_feed=0.3,
+    engrave_power=0.1,
 )
 BLOCKS = (
     Block(BlockKind.RAPID, 0, 1),
     Block(BlockKind.PIERCE, 2, 2, 1, "CUT", ("2F", "30")),
     Block(BlockKind.CUT, 3, 4, 1, "CUT", ("2F", "30")),
-    Block(BlockKind.RAPID, 5, 5),
+    Block(BlockKind.ENGRAVE, 5, 5, 2, "TEXT", ("31",)),
 )
 PROGRAM = Program(
     robot=ROBOT,
     placement=Placement(x=0.1 / 3, y=-1e-17, rotation=0.1 + 0.2, z=-0.65),
     process=PROCESS,
-    drawing=DrawingRef(file="plate.dxf", sha256="ab" * 32, metres_per_unit=0.0254),
+    drawing=DrawingRef(
+        file="plate.dxf",
+        sha256="ab" * 32,
+        metres_per_unit=0.0254,
+        joining=3e-5,
+        layers=("CUT*", "\u56f3"),
+        ignored_layers=("CUT-OLD",),
+        accept_loss=True,
+    ),
     mode=Mode.CUT,
     blocks=BLOCKS,
     q=np.linspace(0.1, 0.9, 18).reshape(6, 3),

@@ -95,7 +95,7 @@ def test_the_file_looks_as_documented(program: Program) -> None:
     assert lines[-1] == ""
     assert len(lines) == 3 + 6 + 1
     assert meta["rows"] == 6
-    assert meta["process"] == asdict(program.process)
+    assert meta["process"] == json.loads(json.dumps(asdict(program.process)))
     assert meta["sha256"] == hashlib.sha256("\n".join(lines[2:]).encode()).hexdigest()
 
 
