@@ -61,10 +61,10 @@ def is_complete(document: Any, groups: Groups) -> bool:
     for block in document.blocks:
         if str(block.name).casefold() not in known:
             continue  # ezdxf adds arrow heads to old files
-        for entity in _with_parts(block):
+        for entity, is_part in _with_parts(block):
             kind = entity.dxftype()
             held[kind] += 1
-            if not _has_all(entity, kind):
+            if not _has_all(entity, kind) or (kind == "VERTEX" and not is_part):
                 return False
     return all(held[kind] >= count for kind, count in expected.items() if kind not in _REARRANGED)
 
@@ -86,15 +86,15 @@ def _name(groups: Groups, index: int) -> str:
     return groups.group(index).first(2).decode("utf-8", "replace").casefold()
 
 
-def _with_parts(block: Any) -> Iterator[Any]:
-    """The entities of a layout or block, with the vertices of polylines and the attributes of INSERTs."""
+def _with_parts(block: Any) -> Iterator[tuple[Any, bool]]:
+    """The entities of a layout or block; and as parts the vertices of polylines and the attributes of INSERTs."""
     for entity in block:
-        yield entity
+        yield entity, False
         kind = entity.dxftype()
         if kind == "POLYLINE":
-            yield from entity.vertices
+            yield from ((vertex, True) for vertex in entity.vertices)
         elif kind == "INSERT":
-            yield from entity.attribs
+            yield from ((attribute, True) for attribute in entity.attribs)
 
 
 def _has_all(entity: Any, kind: str) -> bool:

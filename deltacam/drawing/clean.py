@@ -50,6 +50,10 @@ _FORMS: Final = {
 }
 _WHOLE_NUMBERS: Final = frozenset((60, 62, 66, 67, 70, 71, 72, 73, 74, 75, 90))
 _TEXTS: Final = frozenset((2,))
+_WITH_CONTENT: Final = frozenset(("IMAGE", "WIPEOUT", "MESH", "MPOLYGON"))
+_HATCH: Final = "100\nAcDbHatch\n10\n0\n20\n0\n30\n0\n2\nSOLID\n70\n1\n71\n0\n91\n0\n75\n1\n76\n1\n98\n0\n"
+"""A fill without an outline."""
+
 _COMMON: Final = (8, 6, 62, 60, 67)
 """Layer, line type, colour, invisible, paper space."""
 
@@ -79,8 +83,15 @@ def write(group: Group, handles: set[bytes]) -> str:
 
 
 def write_bare(group: Group, handles: set[bytes]) -> str:
-    """An entity that draws nothing, with no more than its kind, handle and layer."""
-    return _head(group, handles, ["AcDbEntity"]) + "".join(f"100\n{_marker(group.kind)}\n" for _ in range(2))
+    """An entity that draws nothing, with no more than its kind, handle and layer.
+
+    Raises:
+        DamagedError: ezdxf wants more than that.
+    """
+    if group.kind in _WITH_CONTENT or group.kind.endswith("SURFACE"):
+        raise DamagedError("its contents are damaged")
+    body = _HATCH if group.kind == "HATCH" else "".join(f"100\n{_marker(group.kind)}\n" for _ in range(2))
+    return _head(group, handles, ["AcDbEntity"]) + body
 
 
 def layer(group: Group) -> str:

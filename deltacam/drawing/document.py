@@ -209,11 +209,12 @@ def _recover(groups: Groups, reason: object) -> Loaded | None:
 
 def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
     """What our own reader makes of a file."""
-    if not census.DRAWN.union(("SECTION",)).intersection(groups.kinds):
+    known = census.DRAWN | {"SECTION"}
+    if known.isdisjoint(kind.upper() for kind in set(groups.kinds)):
         raise DrawingError("this is not a DXF file", where=file, hint="export the drawing as DXF")
     for bare in (False, True):
         repaired = repair(groups, file, bare=bare)
-        _refuse_empty(repaired, file, reason)
+        _refuse_empty(repaired, groups, file, reason)
         try:
             document = filemanagement.read(io.StringIO(repaired.text))
         except Exception as error:
@@ -227,12 +228,14 @@ def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
     return Loaded(document, "tolerant", repaired.lost, (*_lost(repaired), _recovered(how)))
 
 
-def _refuse_empty(repaired: Repaired, file: str, reason: object) -> None:
+def _refuse_empty(repaired: Repaired, groups: Groups, file: str, reason: object) -> None:
     """Raises where nothing that can be cut is left of a damaged file."""
     if census.DRAWN.intersection(kind for kind, count in repaired.kept.items() if count):
         return
-    if not repaired.lost and repaired.cut_off:
-        raise DrawingError("the file is cut off before its first entity", where=file, hint=_EXPORT_AGAIN)
+    if "EOF" not in groups.kinds and (repaired.cut_off or not repaired.lost):
+        raise DrawingError(
+            "the file is cut off before the end of its entities: none is left", where=file, hint=_EXPORT_AGAIN
+        )
     what = f"the file is damaged: {_one_line(reason)}"
     if repaired.lost:
         what = f"the file is damaged: none of its {len(repaired.lost)} entities can be read: {repaired.lost[0].reason}"
@@ -242,7 +245,7 @@ def _refuse_empty(repaired: Repaired, file: str, reason: object) -> None:
 def _lost(repaired: Repaired) -> Iterator[Finding]:
     """What is not in the document, counted by kind and reason."""
     if repaired.cut_off:
-        what = "the file has no end: nobody knows what it held after the last entity that was read"
+        what = "the file is cut off before the end of its entities: nobody knows how many are missing"
         yield Finding(what, hint=_EXPORT_AGAIN, kind="lost", blocks=True)
     counts = Counter((entry.kind, entry.reason) for entry in repaired.lost).most_common()
     for (kind, reason), count in counts[:_MOST_REASONS]:
@@ -276,6 +279,8 @@ def _in_utf8(data: bytes) -> bytes:
 
 def _one_line(error: object) -> str:
     """The first line of a foreign message, without its own prefix and full stop."""
-    text = next(iter(str(error).splitlines()), "") or type(error).__name__
+    text = next(iter(str(error).splitlines()), "")
+    if text in ("", "None"):
+        text = "its structure is broken"
     text = text.removeprefix("DXFStructureError: ").rstrip(". ")[:160]
     return "".join(character if character.isprintable() else "?" for character in text)

@@ -151,7 +151,7 @@ class _Walk:
             return
         names = [value for code, value in group.tags if code == 9]
         after = {group.tags[i][1]: group.tags[i + 1] for i in range(len(group.tags) - 1) if group.tags[i][0] == 9}
-        for name in ("$INSUNITS", "$MEASUREMENT"):
+        for name in ("$INSUNITS", "$MEASUREMENT", "$LUNITS"):
             code, value = after.get(name.encode(), (0, b""))
             if name.encode() in names:
                 self.units[name] = str(int(value)) if code == 70 and value.isdigit() and len(value) < 4 else "0"
