@@ -219,7 +219,8 @@ def _spline(raw: Any, numbers: dict[str, Any], index: int, into: Gathered) -> st
             return "a SPLINE of length zero" if len(fit) else "a spline without points"
         control, knots = found
         weights, degree = np.ones(len(control)), 3
-        into.guessed.append(index)
+        if len(control) > 4 or any(tangents):
+            into.guessed.append(index)
     into.singles.append((index, Spline(control, weights, knots, degree), np.eye(3)))
     return ""
 
