@@ -104,8 +104,8 @@ def printable(value: object) -> str:
 
 
 def _index(index: int, true_color: int | None) -> int:
-    """The colour index that the file gives, or the one nearest to a true colour that stands alone."""
-    return _nearest(true_color) if true_color is not None and index == _BYLAYER else index
+    """The colour index that the file gives, or the one nearest to a true colour where it gives none or a default."""
+    return _nearest(true_color) if true_color is not None and index in (_BYLAYER, WHITE) else index
 
 
 @cache
