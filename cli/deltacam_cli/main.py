@@ -14,6 +14,7 @@ import click
 from deltacam.errors import DeltacamError
 
 COMMANDS: Final = {
+    "inspect": "Show what is in DRAWING, and what plan would make of it.",
     "plan": "Plan DRAWING and verify the program.",
     "verify": "Verify PROGRAM, trusting nothing the planner said.",
 }
@@ -67,6 +68,7 @@ def cli(traceback: bool) -> None:
     """From a DXF drawing to a verified robot program for a delta-robot laser cutter.
 
     \b
+    deltacam inspect part.dxf               shows what is in the drawing
     deltacam plan part.dxf                  writes part.program.csv and its reports
     deltacam verify part.program.csv        checks it again, independently
 

@@ -223,7 +223,7 @@ def _footer(drawing: Drawing, measured: Measured, styles: Sequence[LineStyle], v
         parts.append(f'<path d="{ends}" style="stroke:var(--soft)"/>')
         parts.append(f'<text x="{left}" y="{top + 28}">{to_mm(bar):g} mm</text>')
     x, y = left + 190.0, top + 6.0
-    for key, label in _legend(drawing, measured, styles):
+    for key, label in _legend(drawing, styles):
         width = 46.0 + _LETTER * len(label)
         if x + width > _WIDTH - _MARGIN:
             x, y = left + 190.0, y + _ROW
@@ -232,7 +232,7 @@ def _footer(drawing: Drawing, measured: Measured, styles: Sequence[LineStyle], v
     return f'<g class="legend">{"".join(parts)}</g>', y + 40.0
 
 
-def _legend(drawing: Drawing, measured: Measured, styles: Sequence[LineStyle]) -> list[tuple[str, str]]:
+def _legend(drawing: Drawing, styles: Sequence[LineStyle]) -> list[tuple[str, str]]:
     """The key and the label of each kind of line and mark that the picture holds."""
     lines = Counter(each.name for each in styles)
     lines[style.REPEATED.name] = len(_repeated(drawing))

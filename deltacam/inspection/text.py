@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from typing import Final
@@ -19,7 +20,11 @@ _NAME: Final = 30  # characters of a layer's name
 _MOST_LAYERS: Final = 8
 _MOST_CONTOURS: Final = 12
 _MOST_REASONS: Final = 6
+_NOTICED: Final = 1e-8
+"""Conversion errors below a hundredth of a micrometre are rounding, m."""
+
 _ALTERNATIVES: Final = ("mm", "in", "pt")
+_BLOCKS: Final = "inserted blocks, whose entities are counted one by one"
 
 
 def to_text(drawing: Drawing, *, again: str = "") -> str:
@@ -57,7 +62,7 @@ def _heading(drawing: Drawing) -> list[str]:
         lines.append(f"  size     {_by(size)}")
     x, y = drawing.extents[:2]
     lines[-1] += f"; lower left corner at ({to_mm(x):.2f}, {to_mm(y):.2f}) mm"
-    if drawing.conversion_error > 0.0:
+    if drawing.conversion_error >= _NOTICED:
         lines.append(f"  error    {to_um(drawing.conversion_error):.2g} um at most between these contours and the file")
     return lines
 
@@ -141,8 +146,9 @@ def _ledger(ledger: Sequence[LedgerEntry]) -> list[str]:
     lines = [f"  entities: {counts['entities']}" + (f": {', '.join(told)}" if told else "")]
     reasons: dict[tuple[Outcome, str], list[str]] = {}
     for entry in ledger:
-        if entry.reason:
-            reasons.setdefault((entry.outcome, pattern(entry.reason)), []).append(entry.reason)
+        reason = _BLOCKS if entry.kind == "INSERT" and entry.outcome is Outcome.MERGED else entry.reason
+        if reason:
+            reasons.setdefault((entry.outcome, pattern(reason)), []).append(reason)
     found = sorted(reasons.items(), key=lambda item: (-list(Outcome).index(item[0][0]), -len(item[1])))
     rows = [
         (str(len(those)), outcome.value, plain(summary(those), longest=_WIDTH - 20))
@@ -154,14 +160,22 @@ def _ledger(ledger: Sequence[LedgerEntry]) -> list[str]:
 
 def _next(drawing: Drawing, again: str) -> list[str]:
     """What to type next."""
-    blocking = {finding.kind for finding in drawing.findings if finding.blocks}
-    if not again or not drawing.contours:
+    if not again:
         return []
-    if blocking - {"units", "lost"}:
-        return [f"next: change the drawing as said above, then {again}"]
-    unit = "" if drawing.unit else " --units mm"
-    loss = " --accept-loss" if "lost" in blocking else ""
-    return [f"next: {again}{unit}{loss}"]
+    blocking = {finding.kind for finding in drawing.findings if finding.blocks}
+    if not drawing.unit:
+        again += f" --units {_proposed_unit(drawing)}"
+    if "lost" in blocking:
+        again += " --accept-loss"
+    change = "change the drawing as said above, then " if blocking - {"units", "lost"} else ""
+    return [f"next: {change}{again}"]
+
+
+def _proposed_unit(drawing: Drawing) -> str:
+    """The unit that the warning about the missing one proposes."""
+    hints = [finding.hint for finding in drawing.findings if finding.kind == "units"]
+    found = re.search(r"--units (\w+)", " ".join(hints))
+    return found[1] if found else "mm"
 
 
 def _rest(count: int, noun: str, *, indent: str = "  ") -> list[str]:

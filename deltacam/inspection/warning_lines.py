@@ -33,20 +33,24 @@ def _sentence(alike: Sequence[Finding]) -> str:
     """What findings of one kind say, like an error: where, what, hint; of many, those of the first one."""
     first = alike[0]
     mark = "plan will refuse" if first.blocks else "warning"
-    what = plain(summary(finding.what for finding in alike), longest=_LONGEST)
-    where = plain(first.where, longest=_LONGEST)
-    if first.place is not None and not where.endswith(" mm"):
-        x, y = first.place
-        where = f"{where} at ({to_mm(x):.3f}, {to_mm(y):.3f}) mm".lstrip()
+    what, where = plain(summary(finding.what for finding in alike), longest=_LONGEST), _where(first)
     if len(alike) > 1:
-        what = f"{len(alike)} times: {what}" + (f", the first time {_with_preposition(where)}" if where else "")
+        before = "at" if where.startswith("(") else "on"
+        what = f"{len(alike)} times: {what}" + (f", the first time {before} {where}" if where else "")
     elif where:
         what = f"{where}: {what}"
     return f"{mark}: {what}" + (f"; {plain(first.hint, longest=_LONGEST)}" if first.hint else "")
 
 
-def _with_preposition(where: str) -> str:
-    return where if where.startswith("at ") else f"on {where}"
+def _where(finding: Finding) -> str:
+    """Where it is in words, with the place in the drawing unless the finding itself says it."""
+    where = plain(finding.where, longest=_LONGEST)
+    if finding.place is None:
+        return where
+    place = f"({to_mm(finding.place[0]):.3f}, {to_mm(finding.place[1]):.3f})"
+    if place in finding.what or place in where:
+        return where
+    return f"{where} at {place} mm" if where else f"{place} mm"
 
 
 def _wrapped(sentence: str, width: int) -> list[str]:
