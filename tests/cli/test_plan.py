@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+import ezdxf
 import pytest
 from click.testing import CliRunner
 
@@ -155,3 +156,36 @@ def test_a_unit_that_is_missing_or_wrong_is_answered_with_the_one_that_would_fit
     assert result.returncode == 2
     assert says in result.stderr
     assert hint in result.stderr.splitlines()[-1]
+
+
+@pytest.fixture
+def two_discs(tmp_path: Path) -> Path:
+    """A disc of 40 mm on layer A, and one of 20 mm on layer B."""
+    document = ezdxf.new()
+    document.header["$INSUNITS"] = 4
+    document.modelspace().add_circle((0, 0), 20, dxfattribs={"layer": "A"})
+    document.modelspace().add_circle((60, 0), 10, dxfattribs={"layer": "B"})
+    document.saveas(tmp_path / "discs.dxf")
+    return tmp_path / "discs.dxf"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "contours", "width"),
+    [([], 2, 90.0), (["--layer", "a"], 1, 40.0), (["--ignore-layer", "A"], 1, 20.0), (["--layer", "?"], 2, 90.0)],
+)
+def test_only_the_layers_that_count_are_cut_and_verified(
+    tmp_path: Path, two_discs: Path, arguments: list[str], contours: int, width: float
+) -> None:
+    result = deltacam("plan", two_discs, *arguments, "--json", folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    summary = json.loads(result.stdout)["summary"]
+    assert (summary["contours_cut"], summary["part_size_mm"][0]) == (contours, pytest.approx(width))
+    again = deltacam("verify", "discs.program.csv", "--drawing", two_discs, folder=tmp_path)
+    assert again.returncode == 0, again.stdout
+
+
+def test_a_layer_that_the_drawing_does_not_have_is_refused_with_those_it_has(tmp_path: Path, two_discs: Path) -> None:
+    result = deltacam("plan", two_discs, "--layer", "CUT", folder=tmp_path)
+    assert result.returncode == 2
+    assert "--layer: no layer of the drawing is called 'CUT'" in result.stderr
+    assert "'A', 'B'" in result.stderr
