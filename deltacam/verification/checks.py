@@ -22,6 +22,7 @@ OF_SETPOINTS: Final[tuple[Callable[[Evidence], Check], ...]] = (
     laser.laser_off,
     laser.laser_on,
     laser.pierce_before_cut,
+    laser.cut_after_pierce,
     reach.poses,
 )
 """Checks that need the rows alone."""
@@ -49,5 +50,6 @@ OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     contours.uncut,
     contours.cut_length,
     contours.holes_first,
+    contours.contours_last,
 )
 """Checks that need the drawing too."""

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from deltacam.model import Array, Check, Contour, Drawing, IntArray
+from deltacam.model import Array, Check, Contour, Drawing, IntArray, Operation
 from deltacam.program.program import Program
 from deltacam.verification.evidence import Evidence, Run, to_sheet, tool_points
 from deltacam.verification.interpolate import between, motion
@@ -25,13 +25,13 @@ _SHARPEST: Final = np.radians(170.0)  # a sharper corner gets no more allowance 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Target:
-    """A contour of the drawing, its kerf path, and what the program does there.
+    """A contour of the drawing, its path, and what the program does there.
 
     Attributes:
         contour: of the drawing.
-        rings: its kerf path, (K, 2) m each, in the sheet frame.
+        rings: its kerf path, or the line itself, (K, 2) m each, in the sheet frame; closed like the contour.
         path: the same, for distances; None where there is no ring.
-        runs: the cuts of the program that say they cut it.
+        runs: the runs of the program that say they do with it what the drawing wants.
     """
 
     contour: Contour
@@ -57,39 +57,41 @@ class Comparison:
 
 def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
     """Put the cuts of a program beside the contours of a drawing."""
-    runs: defaultdict[int | None, list[Run]] = defaultdict(list)
+    runs: defaultdict[tuple[int | None, Operation], list[Run]] = defaultdict(list)
     for run in evidence.runs:
-        runs[run.contour].append(run)
+        runs[run.contour, run.operation].append(run)
     targets = []
     for contour in drawing.contours:
         found = rings(contour, evidence.program.process.kerf)
-        path = Lines(found, closed=True) if found else None
-        targets.append(Target(contour, found, path, tuple(runs[contour.number])))
+        path = Lines(found, closed=contour.curve.closed) if found else None
+        targets.append(Target(contour, found, path, tuple(runs[contour.number, contour.operation])))
     return Comparison(evidence, drawing, tuple(targets))
 
 
 def same_drawing(program: Program, drawing: Drawing) -> Check:
-    """The drawing is the one that was planned, at the same scale."""
+    """The drawing is the one that was planned, read at the same scale and with the same layers and rules."""
     planned, given = program.drawing, drawing
     problems = []
     if planned.sha256 != given.sha256:
         problems.append(f"planned from {planned.file}, checked against {given.file}, whose bytes differ")
     if planned.metres_per_unit != given.metres_per_unit:
         problems.append(f"planned at {planned.metres_per_unit:g} m per unit, read at {given.metres_per_unit:g}")
+    if program.selection != given.selection:
+        problems.append("it was read with other layers, rules or joining than it was planned with")
     return Check("drawing", not problems, where="; ".join(problems))
 
 
 def known_contours(comparison: Comparison) -> Check:
-    """Every cut is of a contour that the drawing has."""
-    known = {contour.number for contour in comparison.drawing.contours}
-    strange = [run for run in comparison.evidence.runs if run.contour not in known]
+    """Every cut is of a contour that the drawing has for cutting, and what is engraved is there for engraving."""
+    known: set[tuple[int | None, Operation]] = {(one.number, one.operation) for one in comparison.drawing.contours}
+    strange = [run for run in comparison.evidence.runs if (run.contour, run.operation) not in known]
     tick = strange[0].first if strange else None
     where = comparison.evidence.place(strange[0].first) if strange else ""
     return Check("cuts of drawn contours only", not strange, float(len(strange)), 0.0, "cuts", tick, where)
 
 
 def cut_once(comparison: Comparison) -> Check:
-    """Every contour is cut exactly once: as many cuts as its kerf path has rings, and it has at least one."""
+    """Every contour is cut or engraved exactly once: as many times as its path has rings, and it has at least one."""
     wrong = [target for target in comparison.targets if len(target.runs) != len(target.rings) or not target.rings]
     words, tick = "", None
     if wrong:
@@ -100,7 +102,7 @@ def cut_once(comparison: Comparison) -> Check:
 
 
 def deviation(comparison: Comparison) -> Check:
-    """How far the tool is from the kerf path of the contour that it cuts, at every tick with the laser on."""
+    """How far the tool is from the path of the contour that it cuts or engraves, at every tick with the laser on."""
     limit = comparison.evidence.program.process.tolerance
     rows = [_ticks(target.runs, including_end=True) for target in comparison.targets]
     return _worst_distance(comparison, "deviation at ticks", rows, comparison.evidence.sheet, limit)
@@ -122,7 +124,7 @@ def deviation_between(comparison: Comparison) -> Check:
 
 
 def uncut(comparison: Comparison) -> Check:
-    """How much of the kerf path no cut comes near, in total; nothing may stay.
+    """How much of the path no cut or engraving comes near, in total; nothing may stay.
 
     Near is the tolerance of the path and of its chords. A corner that is rounded within the tolerance stays further
     from its tip, by the inverse of the sine of half the angle between its sides.
@@ -139,21 +141,36 @@ def uncut(comparison: Comparison) -> Check:
 
 
 def cut_length(comparison: Comparison) -> Check:
-    """No cut is longer or shorter than its kerf path, beyond what a curve within the tolerances can be."""
+    """No cut is longer or shorter than its path, beyond what a curve within the tolerances can be."""
     process = comparison.evidence.program.process
-    # A closed curve that runs at a distance d beside another one is 2 pi d longer or shorter.
-    slack = 2.0 * np.pi * (process.tolerance + process.chord_tolerance)
     worst, words, tick = 0.0, "", None
     for target in comparison.targets:
-        nominal = sum(float(np.hypot(*(ring - np.roll(ring, 1, axis=0)).T).sum()) for ring in target.rings)
-        lines = [comparison.evidence.sheet[run.first : run.end + 1] for run in target.runs]
-        length = sum(float(np.hypot(*np.diff(line, axis=0).T).sum()) for line in lines)
+        slack = _length_slack(target) * (process.tolerance + process.chord_tolerance)
+        closed = [ring if not target.contour.curve.closed else np.vstack([ring, ring[:1]]) for ring in target.rings]
+        nominal = sum(_length(line) for line in closed)
+        length = sum(_length(comparison.evidence.sheet[run.first : run.end + 1]) for run in target.runs)
         off = max(abs(length - nominal) - slack, 0.0) / nominal if nominal else float(length > 0.0)
-        if lines and off > worst:
+        if target.runs and off > worst:
             worst, tick = off, target.runs[0].first
             words = f"{target.contour.where}: {1e3 * length:.3f} mm for {1e3 * nominal:.3f} mm"
     limit = LENGTH_TOLERANCE * 100.0
     return Check("cut length", 100.0 * worst <= limit, 100.0 * worst, limit, "% off", tick, words)
+
+
+def _length_slack(target: Target) -> float:
+    """How much longer or shorter a curve at the distance d beside the path may be, in multiples of d.
+
+    That is 2 pi for a closed curve that does not cross itself. A line that is followed may bend more often, and each
+    corner that is rounded within d makes it shorter by less than 2 d.
+    """
+    if target.contour.has_kerf:
+        return 2.0 * np.pi
+    corners = [sharp_corners(ring, closed=target.contour.curve.closed) for ring in target.rings]
+    return 2.0 * np.pi + 2.0 * sum(len(turn) for _, turn in corners)
+
+
+def _length(line: Array) -> float:
+    return float(np.hypot(*np.diff(line, axis=0).T).sum())
 
 
 def holes_first(comparison: Comparison) -> Check:
@@ -162,10 +179,30 @@ def holes_first(comparison: Comparison) -> Check:
     wrong = []
     for target in comparison.targets:
         around = targets.get(target.contour.parent or 0)
-        if around and around.runs and target.runs and target.runs[-1].end > around.runs[0].first:
+        if (
+            around
+            and around.contour.has_kerf
+            and around.runs
+            and target.runs
+            and target.runs[-1].end > around.runs[0].first
+        ):
             wrong.append((around.runs[0].first, f"{around.contour.where} before {target.contour.where}"))
     tick, words = min(wrong) if wrong else (None, "")
     return Check("inner contours first", not wrong, float(len(wrong)), 0.0, "contours", tick, words)
+
+
+def contours_last(comparison: Comparison) -> Check:
+    """Nothing is engraved after the first cut, and no open line is cut after the first contour: parts may be loose."""
+    open_ones = {target.contour.number for target in comparison.targets if not target.contour.curve.closed}
+    runs = comparison.evidence.runs
+    stage = np.array(
+        [0 if run.operation is Operation.ENGRAVE else 1 if run.contour in open_ones else 2 for run in runs],
+        dtype=np.int64,
+    )
+    late = np.flatnonzero(stage < np.maximum.accumulate(stage))
+    tick = runs[late[0]].first if len(late) else None
+    words = "" if tick is None else f"{runs[late[0]].operation} after cuts: {comparison.evidence.place(tick)}"
+    return Check("contours cut last", not len(late), float(len(late)), 0.0, "cuts", tick, words)
 
 
 def _ticks(runs: tuple[Run, ...], *, including_end: bool) -> IntArray:
@@ -207,7 +244,7 @@ def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tupl
 
 def _in_rounded_corner(target: Target, points: Array, distance: Array, near: float) -> np.ndarray:
     """Which ``points`` (M, 2) lie so close to a sharp corner that rounding it may leave them at ``distance``, (M,)."""
-    found = [sharp_corners(ring) for ring in target.rings]
+    found = [sharp_corners(ring, closed=target.contour.curve.closed) for ring in target.rings]
     corners = np.concatenate([corner for corner, _ in found])
     if not len(corners) or not len(points):
         return np.zeros(len(points), dtype=bool)

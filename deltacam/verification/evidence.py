@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from deltacam.errors import RobotError
-from deltacam.model import Array, Block, BlockKind, BoolArray, IntArray
+from deltacam.model import Array, Block, BlockKind, BoolArray, IntArray, Operation
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
 
@@ -20,6 +20,9 @@ KINDS: Final = tuple(BlockKind)
 LASER_KINDS: Final = frozenset(KINDS) - {BlockKind.RAPID}
 """The kinds of block in which the laser is on."""
 
+WORKING_KINDS: Final = {BlockKind.CUT: Operation.CUT, BlockKind.ENGRAVE: Operation.ENGRAVE}
+"""The kinds of block that run along a contour of the drawing, and what they do to it."""
+
 MOVING_KINDS: Final = LASER_KINDS - {BlockKind.PIERCE}
 """The kinds of block that move along the sheet with the laser on."""
 
@@ -28,7 +31,7 @@ _NO_BLOCK: Final = Block(BlockKind.RAPID, 0, 0)  # of a row whose block does not
 
 
 class Run(NamedTuple):
-    """Rows in a row that cut one contour: the motion from tick ``first`` to tick ``end``.
+    """Rows in a row that cut or engrave one contour: the motion from tick ``first`` to tick ``end``.
 
     Row ``end - 1`` is the last one with the laser on; it holds until tick ``end``.
     """
@@ -36,6 +39,7 @@ class Run(NamedTuple):
     contour: int | None
     first: int
     end: int
+    operation: Operation = Operation.CUT
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +53,7 @@ class Evidence:
         sheet: the same in the sheet frame, (N, 2) m.
         impossible: the first tick at which the arms cannot close, and why; empty text when there is none.
         kind: index into `KINDS` of every row, (N,).
-        runs: the cuts, in order.
+        runs: what is cut and engraved, in order.
     """
 
     program: Program
@@ -95,7 +99,7 @@ def gather(program: Program, robot: Robot) -> Evidence:
         sheet=to_sheet(program, tool),
         impossible=impossible,
         kind=kind,
-        runs=_runs(program, kind == KINDS.index(BlockKind.CUT)),
+        runs=_runs(program, kind),
     )
 
 
@@ -148,16 +152,23 @@ def _kinds(program: Program) -> IntArray:
     return table[np.where(known, program.block, len(program.blocks))]
 
 
-def _runs(program: Program, cutting: BoolArray) -> tuple[Run, ...]:
-    """Consecutive rows that cut the same contour."""
+def _runs(program: Program, kind: IntArray) -> tuple[Run, ...]:
+    """Consecutive rows that cut, or that engrave, the same contour."""
+    working = np.isin(kind, [KINDS.index(one) for one in WORKING_KINDS])
     contours = [-1 if block.contour is None else block.contour for block in program.blocks]
     numbers = np.append(np.array(contours, dtype=np.int64), -1)
-    number = np.full(len(cutting), -2)
-    number[cutting] = numbers[program.block[cutting]]
-    changes = np.flatnonzero(np.diff(number, prepend=-3, append=-3))
-    final = len(cutting) - 1
+    number = np.full(len(kind), -2)
+    number[working] = numbers[program.block[working]]
+    changed = (np.diff(number, prepend=-3) != 0) | (working & (np.diff(kind, prepend=-1) != 0))
+    edges = [*np.flatnonzero(changed).tolist(), len(kind)]
+    final = len(kind) - 1
     return tuple(
-        Run(None if number[first] < 0 else int(number[first]), int(first), min(int(end), final))
-        for first, end in itertools.pairwise(changes)
+        Run(
+            None if number[first] < 0 else int(number[first]),
+            first,
+            min(end, final),
+            WORKING_KINDS[KINDS[int(kind[first])]],
+        )
+        for first, end in itertools.pairwise(edges)
         if number[first] != -2
     )

@@ -1,6 +1,7 @@
 """Where the beam's centre must run, computed from the drawing by another way than the planner's.
 
-The contour is flattened much finer than any tolerance and the polygon is grown or shrunk by half the kerf.
+The contour is flattened much finer than any tolerance. Where it is closed and cut, the polygon is grown or shrunk by
+half the kerf; what is engraved or open is followed on the line itself.
 """
 
 from __future__ import annotations
@@ -20,17 +21,20 @@ _SAGITTA: Final = 0.1e-6  # of the flattened contour, and of the round joins at 
 
 
 def rings(contour: Contour, kerf: float) -> tuple[Array, ...]:
-    """The kerf path of a contour as polygons: half a kerf outside an outline, half a kerf inside a hole.
+    """The path of a contour as polylines: half a kerf outside an outline, half a kerf inside a hole, else the line.
 
     Args:
         contour: of the drawing.
         kerf: width of the cut, m, >= 0.
 
     Returns:
-        every ring, (K, 2) m in the sheet frame, the first point not repeated. None where the kerf swallows the contour
-        or the contour crosses itself; several where the path falls apart or closes a bay.
+        every ring, (K, 2) m in the sheet frame, the first point not repeated; of an open contour the line from end to
+        end. None where the kerf swallows the contour or the contour crosses itself; several where the path falls apart
+        or closes a bay.
     """
     points, _ = flatten(contour.curve, _SAGITTA)
+    if not contour.has_kerf:
+        return (points,)
     if len(points) < 3 or not (polygon := Polygon(points)).is_valid:
         return ()
     if kerf == 0.0:
@@ -44,10 +48,15 @@ def rings(contour: Contour, kerf: float) -> tuple[Array, ...]:
     return tuple(np.asarray(ring.coords)[:-1, :2] for ring in found)
 
 
-def sharp_corners(ring: Array) -> tuple[Array, Array]:
-    """The vertices at which a ring turns by more than 10 degrees: (M, 2) m, and by how much, (M,) rad in 0 to pi."""
+def sharp_corners(ring: Array, *, closed: bool) -> tuple[Array, Array]:
+    """The vertices at which a line turns by more than 10 degrees: (M, 2) m, and by how much, (M,) rad in 0 to pi.
+
+    The ends of a line that is not ``closed`` are no corners.
+    """
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     turn = np.abs(np.arctan2(cross, np.sum(before * after, axis=1)))
     sharp = turn > np.radians(10.0)
+    if not closed:
+        sharp[[0, -1]] = False
     return ring[sharp], turn[sharp]

@@ -6,12 +6,13 @@ from typing import Final
 
 import numpy as np
 
-from deltacam.model import BlockKind, Check, IntArray, Mode
+from deltacam.model import BlockKind, Check, IntArray, Mode, Operation
 from deltacam.verification.evidence import KINDS, LASER_KINDS, Evidence, Run
 from deltacam.verification.measure import MICROMETRE, at_most, none_of
 
 _PIERCE: Final = KINDS.index(BlockKind.PIERCE)
 _LEAD_IN: Final = KINDS.index(BlockKind.LEAD_IN)
+_ENGRAVE: Final = KINDS.index(BlockKind.ENGRAVE)
 
 
 def power_range(evidence: Evidence) -> Check:
@@ -21,7 +22,7 @@ def power_range(evidence: Evidence) -> Check:
 
 
 def laser_off(evidence: Evidence) -> Check:
-    """The laser is off outside pierces and cuts, and everywhere unless the program is for cutting."""
+    """The laser is off outside pierces, cuts and engraving, and everywhere unless the program is for cutting."""
     wrong = evidence.program.power != 0.0
     if evidence.program.mode is Mode.CUT:
         wrong = wrong & ~evidence.is_kind(LASER_KINDS)
@@ -29,8 +30,11 @@ def laser_off(evidence: Evidence) -> Check:
 
 
 def laser_on(evidence: Evidence) -> Check:
-    """A program for cutting has the power of its process in all pierces and cuts."""
-    wrong = evidence.program.power != evidence.program.process.power
+    """A program for cutting has the power of its process in all pierces and cuts, and that for engraving elsewhere."""
+    process = evidence.program.process
+    engraving = np.nan if process.engrave_power is None else process.engrave_power  # nan is no power at all
+    wanted = np.where(evidence.kind == _ENGRAVE, engraving, process.power)
+    wrong = evidence.program.power != wanted
     wrong = wrong & evidence.is_kind(LASER_KINDS) & (evidence.program.mode is Mode.CUT)
     return none_of(evidence, "laser on in all cuts", wrong)
 
@@ -48,10 +52,25 @@ def pierce_before_cut(evidence: Evidence) -> Check:
     """Every cut follows a pierce of its contour that is as long as the process says, to within half a tick."""
     start = _stretch_starts(evidence)
     needed = evidence.program.process.pierce_time
-    missing = np.array([needed - _pierced_for(evidence, run, start) for run in evidence.runs])
-    ticks = np.array([run.first for run in evidence.runs], dtype=np.int64)
+    cuts = [run for run in evidence.runs if run.operation is Operation.CUT]
+    missing = np.array([needed - _pierced_for(evidence, run, start) for run in cuts])
+    ticks = np.array([run.first for run in cuts], dtype=np.int64)
     limit = 0.5 / evidence.rate
     return at_most(evidence, "pierce before every cut", missing * 1e3, limit * 1e3, "ms missing", ticks=ticks)
+
+
+def cut_after_pierce(evidence: Evidence) -> Check:
+    """Every pierce is followed by a cut, or the lead-in of one, of its contour: nothing else burns a hole."""
+    last = np.flatnonzero((evidence.kind == _PIERCE) & (np.append(evidence.kind[1:], -1) != _PIERCE))
+    wrong = np.zeros(len(evidence.kind), dtype=np.bool_)
+    for row in last.tolist():
+        following = evidence.block_of(row + 1) if row + 1 < len(wrong) else None
+        wrong[row] = (
+            following is None
+            or following.kind not in (BlockKind.LEAD_IN, BlockKind.CUT)
+            or following.contour != evidence.block_of(row).contour
+        )
+    return none_of(evidence, "cut after every pierce", wrong, "pierces")
 
 
 def _pierced_for(evidence: Evidence, run: Run, start: IntArray) -> float:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
-from deltacam.model import Array, Check
+from deltacam.model import Array, BlockKind, Check
 from deltacam.verification.evidence import MOVING_KINDS, Evidence
 from deltacam.verification.measure import DIFFERENCES, ROUNDING_DEG, at_most, per_joint
+
+_NO_FEED: Final = 1e-9  # mm/s; stands for a limit that the process does not give
 
 
 def joint_range(evidence: Evidence) -> Check:
@@ -48,10 +52,19 @@ def tool_acceleration(evidence: Evidence) -> Check:
 
 
 def feed(evidence: Evidence) -> Check:
-    """The tool's speed while the laser moves along the sheet."""
-    rows = np.flatnonzero(evidence.is_kind(MOVING_KINDS)[:-1])
-    limit = evidence.program.process.feed * DIFFERENCES * 1e3
-    return at_most(evidence, "feed while cutting", _speeds(evidence)[rows] * 1e3, limit, "mm/s", ticks=rows)
+    """The tool's speed while the laser moves along the sheet, cutting or engraving: the one nearer to its limit."""
+    process, speeds = evidence.program.process, _speeds(evidence) * 1e3
+    groups = (
+        (MOVING_KINDS - {BlockKind.ENGRAVE}, process.feed),
+        (frozenset({BlockKind.ENGRAVE}), process.engrave_feed or 0.0),
+    )
+    found = []
+    for kinds, limit in groups:
+        rows = np.flatnonzero(evidence.is_kind(kinds)[:-1])
+        allowed = limit * DIFFERENCES * 1e3
+        used = float(speeds[rows].max()) / max(allowed, _NO_FEED) if len(rows) else -1.0
+        found.append((used, at_most(evidence, "feed while cutting", speeds[rows], allowed, "mm/s", ticks=rows)))
+    return max(found, key=lambda one: one[0])[1]
 
 
 def rest_at_ends(evidence: Evidence) -> Check:

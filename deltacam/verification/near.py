@@ -29,7 +29,7 @@ class Lines:
         closed: whether the last point of every line joins its first.
 
     Attributes:
-        samples: (M, 2) m, at most `SPACING` apart along a line.
+        samples: (M, 2) m, at most `SPACING` apart along a line, both ends of an open one among them.
         share: the length of line that every sample stands for, (M,) m.
     """
 
@@ -41,15 +41,19 @@ class Lines:
         counts = np.array([len(part) - 1 for part in parts])
         self._starts = np.concatenate([part[:-1] for part in parts])
         self._ends = np.concatenate([part[1:] for part in parts])
-        self.samples = self._starts
-        self.share = np.hypot(*(self._ends - self._starts).T)
         # Samples are the starts of the pieces, so that the end of an open line needs one of its own.
         first = np.repeat(np.cumsum(counts) - counts, counts)
         last = first + np.repeat(counts, counts) - 1
         here = np.arange(len(self._starts))
         self._before = np.where(here > first, here - 1, last if closed else here)
-        self._tree = cKDTree(self._starts if closed else np.concatenate([self._starts, self._ends[np.unique(last)]]))
         self._extra = np.unique(last)
+        self.samples, self.share = self._starts, np.hypot(*(self._ends - self._starts).T)
+        if not closed:
+            half = 0.5 * self.share[self._extra]
+            self.share[self._extra] = half
+            self.samples = np.concatenate([self._starts, self._ends[self._extra]])
+            self.share = np.concatenate([self.share, half])
+        self._tree = cKDTree(self.samples)
         self._pieces: shapely.STRtree | None = None
 
     def distance(self, points: Array, *, exact_above: float) -> Array:

@@ -11,6 +11,7 @@ from deltacam.plain import plain
 
 _WIDEST_PLACE: Final = 100  # characters
 _MOST_FINDINGS: Final = 8
+_ROUNDING: Final = 1e-3  # um
 
 
 def to_text(report: Report) -> str:
@@ -41,11 +42,12 @@ def _figures(summary: Mapping[str, Any]) -> list[str]:
     program = summary["program"]
     rows = f"{program['rows']} rows at {_number(program['rate_hz'])} Hz"
     times = ", ".join(f"{kind} {_number(seconds)} s" for kind, seconds in summary["time_s"].items())
-    lines = [f"  time     {program['duration_s']:.3f} s in {rows}: {times}"]
+    lines = [*_drawing(summary), f"  time     {program['duration_s']:.3f} s in {rows}: {times}"]
     if "cut_length_mm" in summary:
-        contours = f"{summary['contours_cut']} contours"
-        lengths = f"{summary['cut_length_mm']:.1f} mm cut, {summary['rapid_length_mm']:.1f} mm rapid"
-        lines.append(f"  path     {lengths}, {contours}{_part_size(summary)}")
+        names = ("cut", "engraved", "rapid") if summary["contours_engraved"] else ("cut", "rapid")
+        lengths = ", ".join(f"{summary[f'{name}_length_mm']:.1f} mm {name}" for name in names)
+        engraved = f", {summary['contours_engraved']} engraved" if summary["contours_engraved"] else ""
+        lines.append(f"  path     {lengths}, {summary['contours_cut']} contours{engraved}")
     process = f"kerf {_number(summary['kerf_mm'])} mm, feed {_number(summary['feed_mm_s'])} mm/s"
     derived = " (joint limits derived from the tool rating)" if summary.get("derived_joint_limits") else ""
     lines.append(f"  robot    {plain(summary['robot'])}{derived}; {plain(summary['process'])}, {process}")
@@ -56,11 +58,15 @@ def _figures(summary: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def _part_size(summary: Mapping[str, Any]) -> str:
-    if "part_size_mm" not in summary:
-        return ""
-    width, height = summary["part_size_mm"]
-    return f", part {width:.2f} x {height:.2f} mm"
+def _drawing(summary: Mapping[str, Any]) -> list[str]:
+    """The size of the part, what the drawing's unit was taken as, and how exactly it was read."""
+    if "unit" not in summary:
+        return []
+    size = " x ".join(f"{side:.2f}" for side in summary.get("part_size_mm", ()))
+    part = f"part {size} mm, " if size else ""
+    error = summary["conversion_error_um"]
+    exact = f"read to within {_number(error)} um" if error >= _ROUNDING else "read exactly"
+    return [f"  drawing  {part}unit {plain(summary['unit'])}, {exact}"]
 
 
 def _failures(checks: list[Check], rate: float) -> list[str]:

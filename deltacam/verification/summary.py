@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from deltacam.geometry.curve import bounds
-from deltacam.model import Array, BlockKind, Check, Drawing
+from deltacam.model import Array, BlockKind, Check, Drawing, Operation
 from deltacam.verification.evidence import KINDS, MOVING_KINDS, Evidence
 from deltacam.verification.measure import DIFFERENCES
 
@@ -28,16 +28,24 @@ def summarize(evidence: Evidence, drawing: Drawing | None, checks: Sequence[Chec
         "feed_mm_s": process.feed * 1e3,
         "tolerance_um": process.tolerance * 1e6,
         "chord_tolerance_um": process.chord_tolerance * 1e6,
-        "contours_cut": len({run.contour for run in evidence.runs}),
+        "contours_cut": _contours(evidence, Operation.CUT),
+        "contours_engraved": _contours(evidence, Operation.ENGRAVE),
         "time_s": _times(evidence),
         "share_of_limit": _shares(checks),
     }
     figures |= _lengths(evidence)
+    if drawing:
+        figures["unit"] = drawing.unit_in_words
+        figures["conversion_error_um"] = drawing.conversion_error * 1e6
     if drawing and drawing.contours:
         boxes = np.array([bounds(contour.curve) for contour in drawing.contours])
         figures["contours_drawn"] = len(drawing.contours)
         figures["part_size_mm"] = _size(boxes.reshape(-1, 2))
     return figures
+
+
+def _contours(evidence: Evidence, operation: Operation) -> int:
+    return len({run.contour for run in evidence.runs if run.operation is operation})
 
 
 def _shares(checks: Sequence[Check]) -> dict[str, float]:
@@ -56,14 +64,16 @@ def _lengths(evidence: Evidence) -> dict[str, Any]:
     if not len(evidence.tool):
         return {}
     steps = np.linalg.norm(np.diff(evidence.tool, axis=0), axis=1)
-    cutting = evidence.is_kind(MOVING_KINDS)[:-1]
+    working = evidence.is_kind(MOVING_KINDS)[:-1]
+    engraving = evidence.is_kind(frozenset({BlockKind.ENGRAVE}))[:-1]
     rapid = evidence.is_kind(frozenset({BlockKind.RAPID}))[:-1]
     figures: dict[str, Any] = {
-        "cut_length_mm": float(steps[cutting].sum() * 1e3),
+        "cut_length_mm": float(steps[working & ~engraving].sum() * 1e3),
+        "engraved_length_mm": float(steps[engraving].sum() * 1e3),
         "rapid_length_mm": float(steps[rapid].sum() * 1e3),
     }
-    if cutting.any():
-        figures["path_size_mm"] = _size(evidence.sheet[:-1][cutting])
+    if working.any():
+        figures["path_size_mm"] = _size(evidence.sheet[:-1][working])
     return figures
 
 

@@ -1,5 +1,7 @@
 """The reference kerf path, against the distance from the exact contour."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 from shapely import Polygon
 
 from deltacam.geometry import curve as curves
-from deltacam.model import Contour, Curve
+from deltacam.model import Contour, Curve, Operation
 from deltacam.verification.kerf_path import ACCURACY, rings, sharp_corners
 
 
@@ -77,6 +79,18 @@ def test_a_bay_that_the_kerf_closes_leaves_two_rings() -> None:
 
 
 def test_sharp_corners_are_those_of_the_polygon() -> None:
-    corners, turns = sharp_corners(np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.1), (2.0, 1.0), (0.0, 1.0)]))
+    line = np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.1), (2.0, 1.0), (0.0, 1.0)])
+    corners, turns = sharp_corners(line, closed=True)
     assert corners.tolist() == [[0.0, 0.0], [2.0, 0.1], [2.0, 1.0], [0.0, 1.0]]
     assert turns == pytest.approx([np.pi / 2, np.pi / 2 - np.arctan(0.1), np.pi / 2, np.pi / 2])
+    corners, turns = sharp_corners(line, closed=False)
+    assert corners.tolist() == [[2.0, 0.1], [2.0, 1.0]]
+    assert turns == pytest.approx([np.pi / 2 - np.arctan(0.1), np.pi / 2])
+
+
+@pytest.mark.parametrize(("closed", "operation"), [(True, "engrave"), (False, "engrave"), (False, "cut")])
+def test_what_is_engraved_or_open_is_followed_on_the_line_itself(closed: bool, operation: str) -> None:
+    corners = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]) * 1e-2
+    line = Curve(points=corners, bulges=np.zeros(3 if closed else 2), closed=closed)
+    drawn = replace(contour(line, 0), operation=Operation(operation))
+    assert [ring.tolist() for ring in rings(drawn, 0.2e-3)] == [corners.tolist()]
