@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from deltacam.drawing.tags import Groups
+from deltacam.drawing.tags import Group, Groups
 
 DRAWN: Final = frozenset(("LINE", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "VERTEX", "SPLINE", "INSERT"))
 """Kinds that draw something which can be cut, or are part of such."""
@@ -38,6 +38,67 @@ _NEEDED: Final = {
 """Attributes for which ezdxf puts in a value of its own where the file has none."""
 
 
+_ONCE: Final = {
+    "LINE": (10, 11),
+    "CIRCLE": (10, 40),
+    "ARC": (10, 40, 50, 51),
+    "ELLIPSE": (10, 11, 40),
+    "INSERT": (2, 10),
+    "VERTEX": (10,),
+    "POLYLINE": (8, 70),
+    "LWPOLYLINE": (8, 70, 90),
+    "SPLINE": (8, 70, 71),
+    "TEXT": (8, 10),
+    "MTEXT": (8, 10),
+    "POINT": (8, 10),
+}
+"""Group codes that cannot come twice, unless the head of the next entity is missing and the two run together."""
+
+_NEVER: Final = {"SEQEND": 10, "ENDBLK": 10, "ENDSEC": 10, "TABLE": 10, "ENDTAB": 10}
+"""Group codes that do not belong there, unless the head of the next entity is missing."""
+
+
+def flaw(group: Group) -> str:
+    """Why a group seems to be more than one, in words; empty where it does not."""
+    codes = [code for code, _ in group.tags]
+    twice = [code for code in _ONCE.get(group.kind, ()) if codes.count(code) > 1]
+    if twice:
+        return f"group code {twice[0]} comes twice, as if two entities ran together"
+    never = _NEVER.get(group.kind, 10 if _is_head(group) else -1)
+    return "an entity without its start" if never in codes else ""
+
+
+def _is_head(group: Group) -> bool:
+    """Whether a group is the head of a section of entities."""
+    return group.kind == "SECTION" and group.first(2).upper() in (b"ENTITIES", b"BLOCKS")
+
+
+def _run_together(groups: Groups) -> bool:
+    """Whether any group of a paired file has a flaw."""
+    codes = groups.codes()
+    of = np.searchsorted(groups.heads, 2 * np.arange(len(codes)), side="right") - 1
+    kinds = np.array(groups.kinds)
+    for code in {code for once in _ONCE.values() for code in once}:
+        counts = np.bincount(of[(codes == code) & (of >= 0)], minlength=len(groups))
+        several = kinds[counts > 1]
+        if any(code in _ONCE.get(str(kind), ()) for kind in np.unique(several)):
+            return True
+    with_point = np.unique(of[(codes == 10) & (of >= 0)])
+    suspects = with_point[np.isin(kinds[with_point], [*_NEVER, "SECTION"])]
+    return any(flaw(groups.group(i)) for i in suspects.tolist())
+
+
+def miscounted(groups: Groups) -> int:
+    """How many LWPOLYLINEs say that they have another number of vertices than they have."""
+    count = 0
+    for i, kind in enumerate(groups.kinds):
+        if kind == "LWPOLYLINE":
+            group = groups.group(i)
+            said = group.first(90)
+            count += said.isdigit() and said != b"%d" % sum(code == 10 for code, _ in group.tags)
+    return count
+
+
 def entities(groups: Groups) -> Iterator[int]:
     """The indices of the groups that are entities, wherever in the file they are."""
     section = ""
@@ -51,7 +112,14 @@ def entities(groups: Groups) -> Iterator[int]:
 
 
 def is_complete(document: Any, groups: Groups) -> bool:
-    """Whether the document holds every entity of the file, each with all that it needs."""
+    """Whether the document holds every entity of the file, each with all that it needs.
+
+    Args:
+        document: of ezdxf.
+        groups: of the same file.
+    """
+    if not groups.paired or _run_together(groups):
+        return False
     blocks = [_name(groups, i) for i, kind in enumerate(groups.kinds) if kind == "BLOCK"]
     if len(set(blocks)) < len(blocks):
         return False  # ezdxf draws the one over the other
@@ -69,8 +137,13 @@ def is_complete(document: Any, groups: Groups) -> bool:
     return all(held[kind] >= count for kind, count in expected.items() if kind not in _REARRANGED)
 
 
-def is_ordered(groups: Groups) -> bool:
-    """Whether ezdxf's recovery finds each coordinate where it looks for it; what it does not find it drops."""
+def is_ordered(groups: Groups, unordered: frozenset[str] = frozenset()) -> bool:
+    """Whether ezdxf finds each coordinate where it looks for it; what it does not find it drops.
+
+    Args:
+        groups: of the file.
+        unordered: kinds that need not be.
+    """
     if not groups.paired:
         return False
     codes = groups.codes()
@@ -78,8 +151,7 @@ def is_ordered(groups: Groups) -> bool:
     y = np.isin(codes, (20, 21, 22, 23, 220))
     lone = (x[:-1] & ~y[1:]) | (y[1:] & ~x[:-1])
     of = np.searchsorted(groups.heads, 2 * np.flatnonzero(lone), side="right") - 1
-    # Recovery puts the coordinates of a LINE in order.
-    return all(groups.kinds[i] not in DRAWN or groups.kinds[i] == "LINE" for i in set(of.tolist()))
+    return all(groups.kinds[i] not in DRAWN or groups.kinds[i] in unordered for i in set(of.tolist()))
 
 
 def _name(groups: Groups, index: int) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
-from deltacam.drawing.census import DRAWN
+from deltacam.drawing.census import DRAWN, flaw
 from deltacam.drawing.tags import Group, Tag
 
 _NUMBER: Final = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d{1,4})?")
@@ -72,6 +72,8 @@ def write(group: Group, handles: set[bytes]) -> str:
         return _head(group, handles, ["AcDbEntity"]) + _as_it_is(group)
     if not group.whole:
         raise DamagedError("lines of it are missing or damaged")
+    if flaw(group):
+        raise DamagedError(flaw(group))
     own = _own(group.tags)
     if group.kind == "LWPOLYLINE":
         body = _lwpolyline(own)
@@ -195,9 +197,6 @@ def _lwpolyline(tags: list[Tag]) -> str:
     if len(ys) != len(xs):
         raise DamagedError(f"it has {len(xs)} x but {len(ys)} y")
     single = dict(tags[: xs[0]]) | {code: value for code, value in tags if code in (38, 39, 43, 70)}
-    count = single.get(90)
-    if count is not None and count != b"%d" % len(xs) and _WHOLE.fullmatch(count):
-        raise DamagedError(f"it says that it has {text(count)} vertices but has {len(xs)}")
     parts = ["100\nAcDbPolyline\n", f"90\n{len(xs)}\n"]
     parts += [_tag(code, single[code]) for code in (70, 43, 38, 39) if code in single]
     for start, end, y in zip(xs, [*xs[1:], len(tags)], ys, strict=True):

@@ -43,27 +43,11 @@ _MEMORY_FACTOR, _MEMORY_FIXED = 30, 512 * 2**20
 _MAX_RECOVERED: Final = 100_000
 """Damaged files with more groups go to the tolerant reader at once: ezdxf's recovery can take quadratic time."""
 
-_HARMLESS: Final = frozenset(
-    (
-        1,
-        2,
-        3,
-        4,
-        5,
-        7,
-        9,
-        10,
-        12,
-        14,
-        *range(100, 103),
-        *range(105, 108),
-        *range(110, 115),
-        118,
-        202,
-        *range(204, 208),
-        213,
-        223,
-    )
+_REORDERED: Final = frozenset(("LINE",))
+"""Kinds whose coordinates ezdxf's recovery puts in order."""
+
+_HARMLESS: Final = frozenset({1, 2, 3, 4, 7, 9, 10, 12, 14, 118, 202, 213, 223}).union(
+    range(100, 103), range(105, 108), range(110, 115), range(204, 208)
 )
 """What ezdxf's audit may mend without a change of what is drawn: names, owners, colours, dictionaries, ...
 
@@ -141,8 +125,8 @@ def load(data: bytes, file: str) -> Loaded:
     reason: object = _INCOMPLETE
     try:
         document = _read_plain(data.removeprefix(b"\xef\xbb\xbf"))
-        if census.is_complete(document, groups):
-            return Loaded(document, "plain")
+        if census.is_ordered(groups) and census.is_complete(document, groups):
+            return Loaded(document, "plain", findings=_miscounted(groups))
         del document
     except Exception as error:  # noqa: BLE001  # ezdxf raises whatever a damaged file makes it stumble over
         reason = error
@@ -171,8 +155,8 @@ def _load_binary(data: bytes, file: str) -> Loaded:
     except Exception as error:
         what = f"a binary DXF file that is damaged or cut off: {_one_line(error)}"
         raise DrawingError(what, where=file, hint="copy it again as binary, or export it as ASCII DXF") from error
-    if census.is_complete(document, groups):
-        return Loaded(document, "plain")
+    if census.is_ordered(groups) and census.is_complete(document, groups):
+        return Loaded(document, "plain", findings=_miscounted(groups))
     return _tolerate(groups, file, _INCOMPLETE)
 
 
@@ -195,7 +179,7 @@ def _read_plain(data: bytes) -> Document:
 
 def _recover(groups: Groups, reason: object) -> Loaded | None:
     """What ``ezdxf.recover`` makes of a file, if that is all of it and unchanged."""
-    if len(groups) > _MAX_RECOVERED or not census.is_ordered(groups):
+    if len(groups) > _MAX_RECOVERED or not census.is_ordered(groups, _REORDERED):
         return None
     try:
         document, auditor = recover.read(io.BytesIO(groups.text))
@@ -204,7 +188,7 @@ def _recover(groups: Groups, reason: object) -> Loaded | None:
     mended = {int(entry.code) for entry in (*auditor.errors, *auditor.fixes)}
     if not (mended <= _HARMLESS and len(document.modelspace()) and census.is_complete(document, groups)):
         return None
-    return Loaded(document, "recover", findings=(_recovered(_one_line(reason)),))
+    return Loaded(document, "recover", findings=(_recovered(_one_line(reason)), *_miscounted(groups)))
 
 
 def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
@@ -225,7 +209,7 @@ def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
     if not census.is_complete(document, tags.split(repaired.text.encode("utf-8", "surrogateescape"))):
         raise DrawingError(f"the file is damaged: {_one_line(reason)}", where=file, hint=_SAVE_AGAIN)
     how = ", ".join(repaired.repairs) or _one_line(reason)
-    return Loaded(document, "tolerant", repaired.lost, (*_lost(repaired), _recovered(how)))
+    return Loaded(document, "tolerant", repaired.lost, (*_lost(repaired), _recovered(how), *_miscounted(groups)))
 
 
 def _refuse_empty(repaired: Repaired, groups: Groups, file: str, reason: object) -> None:
@@ -245,7 +229,7 @@ def _refuse_empty(repaired: Repaired, groups: Groups, file: str, reason: object)
 def _lost(repaired: Repaired) -> Iterator[Finding]:
     """What is not in the document, counted by kind and reason."""
     if repaired.cut_off:
-        what = "the file is cut off before the end of its entities: nobody knows how many are missing"
+        what = f"the file is cut off before the {repaired.cut_off} of its entities: nobody knows how many are missing"
         yield Finding(what, hint=_EXPORT_AGAIN, kind="lost", blocks=True)
     counts = Counter((entry.kind, entry.reason) for entry in repaired.lost).most_common()
     for (kind, reason), count in counts[:_MOST_REASONS]:
@@ -255,6 +239,15 @@ def _lost(repaired: Repaired) -> Iterator[Finding]:
     if more:
         what = f"{more} more entities could not be read"
         yield Finding(what, hint=_SAVE_AGAIN, kind="lost", blocks=True)
+
+
+def _miscounted(groups: Groups) -> tuple[Finding, ...]:
+    """The finding about polylines that announce more or fewer vertices than they have."""
+    count = census.miscounted(groups)
+    if not count:
+        return ()
+    what = f"{count} LWPOLYLINE with another number of vertices than announced (group code 90): some may be missing"
+    return (Finding(what, hint="compare the drawing with what is shown here", kind="recovered"),)
 
 
 def _recovered(how: str) -> Finding:

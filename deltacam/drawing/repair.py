@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from deltacam.drawing import clean
-from deltacam.drawing.census import DRAWN, STRUCTURE, TABLES
+from deltacam.drawing.census import DRAWN, STRUCTURE, TABLES, flaw
 from deltacam.drawing.clean import DamagedError
 from deltacam.drawing.tags import Group, Groups
 from deltacam.errors import DrawingError
@@ -35,14 +35,14 @@ class Repaired:
         kept: how many entities of each kind are in the text.
         lost: those that are not.
         repairs: what was wrong with the file besides, in words.
-        cut_off: whether the file has no end, so that nobody knows what else it held.
+        cut_off: "start" or "end" where the file has none, so that nobody knows what else it held; else empty.
     """
 
     text: str
     kept: Counter[str]
     lost: tuple[LedgerEntry, ...]
     repairs: tuple[str, ...]
-    cut_off: bool
+    cut_off: str
 
 
 def repair(groups: Groups, file: str, *, bare: bool) -> Repaired:
@@ -93,6 +93,8 @@ class _Walk:
     section: str = ""
     block: _Block | None = None
     parent: _Parent | None = None
+    opened: bool = False
+    started: bool = True
     ended: bool = True
     handles: set[bytes] = field(default_factory=set)
     layers: dict[str, str] = field(default_factory=dict)
@@ -111,11 +113,12 @@ class _Walk:
             group = Group(kind, group.tags, group.whole)
         if self.parent and kind != _CHILDREN[self.parent.group.kind]:
             self._close_parent(self.parent)
+        if kind not in DRAWN and flaw(group):
+            self._lose(Group("?", group.tags, group.whole), flaw(group))
         if kind == "SECTION":
             self._open_section(group)
         elif kind in ("ENDSEC", "EOF"):
-            self._close_block()
-            self.section, self.ended = "", True
+            self._close_section(kind)
         elif kind == "BLOCK":
             self._open_block(group)
         elif kind == "ENDBLK":
@@ -124,11 +127,12 @@ class _Walk:
             self._layer(group)
         elif kind in DRAWN or not (self.section in _ELSEWHERE or kind in STRUCTURE or kind in TABLES):
             self.ended = False
+            self.started = self.started and self.section not in _ELSEWHERE
             self._entity(group, is_last=index + 1 == len(self.groups))
 
     def finish(self) -> Repaired:
         """The text, once every group was visited."""
-        cut_off = not self.ended
+        cut_off = "" if self.ended else "end"
         if self.parent:
             if cut_off:
                 self.parent.problem = "the file ends inside it"
@@ -142,10 +146,11 @@ class _Walk:
             f"0\nSECTION\n2\nBLOCKS\n{blocks}0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{''.join(self.model)}0\nENDSEC\n0\nEOF\n"
         )
         repairs = tuple(f"{count} {what}" for what, count in self.repairs.items())
-        return Repaired(text, self.kept, tuple(self.lost), repairs, cut_off)
+        return Repaired(text, self.kept, tuple(self.lost), repairs, cut_off or ("" if self.started else "start"))
 
     def _open_section(self, group: Group) -> None:
         self._close_block()
+        self.opened = True
         self.section = clean.text(group.first(2)).upper()
         if self.section != "HEADER":
             return
@@ -155,6 +160,13 @@ class _Walk:
             code, value = after.get(name.encode(), (0, b""))
             if name.encode() in names:
                 self.units[name] = str(int(value)) if code == 70 and value.isdigit() and len(value) < 4 else "0"
+
+    def _close_section(self, kind: str) -> None:
+        """The end of a section; where it was never opened the start of the file is missing."""
+        self._close_block()
+        if kind == "ENDSEC" and not self.opened:
+            self.started = False
+        self.opened, self.section, self.ended = False, "", True
 
     def _layer(self, group: Group) -> None:
         """A layer's name, flags, colour and line type; without numbers that are none."""
