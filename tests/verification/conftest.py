@@ -11,7 +11,19 @@ import numpy as np
 import pytest
 
 from deltacam.geometry import curve as curves
-from deltacam.model import Block, BlockKind, Check, Contour, Curve, Drawing, Mode, Placement, Process, Report
+from deltacam.model import (
+    Block,
+    BlockKind,
+    Check,
+    Contour,
+    Curve,
+    Drawing,
+    Mode,
+    Operation,
+    Placement,
+    Process,
+    Report,
+)
 from deltacam.program.program import DrawingRef, Program
 from deltacam.robot.reader import load_robot
 from deltacam.robot.robot import Robot
@@ -60,9 +72,9 @@ def smooth(length: float, speed: float, acceleration: float, rate: float) -> np.
 
 
 def along(curve: Curve, distance: np.ndarray) -> np.ndarray:
-    """Points at ``distance`` from the start; past the end it starts again."""
+    """Points at ``distance`` from the start; past the end a closed curve starts again, an open one goes straight on."""
     ends = np.cumsum(curves.lengths(curve))
-    wrapped = np.where(distance >= ends[-1], distance - ends[-1], distance)
+    wrapped = np.where(curve.closed & (distance >= ends[-1]), distance - ends[-1], distance)
     segment = np.minimum(np.searchsorted(ends, wrapped, side="right"), len(ends) - 1)
     points, _ = curves.evaluate(curve, segment, wrapped - np.concatenate([[0.0], ends])[segment])
     return points
@@ -96,15 +108,21 @@ class Bench:
         stretches: list[tuple[BlockKind, int | None, np.ndarray]] = []
         here = park
         for number in self.order:
-            path = paths[number]
+            path, kind = paths[number], self._kind(number)
             stretches.append((BlockKind.RAPID, None, self._line(here, path.points[0], rate)[:-1]))
-            stretches.append((BlockKind.PIERCE, number, np.repeat(path.points[:1], self.pierce_ticks, axis=0)))
+            pierce = 0 if kind is BlockKind.ENGRAVE else self.pierce_ticks
+            stretches.append((BlockKind.PIERCE, number, np.repeat(path.points[:1], pierce, axis=0)))
             length = curves.length(path) * self.turns
-            points = along(path, smooth(length, self.feed or self.process.feed, 8.0, rate))
-            stretches.append((BlockKind.CUT, number, points[:-1]))
+            feed = self.process.engrave_feed if kind is BlockKind.ENGRAVE else self.process.feed
+            points = along(path, smooth(length, self.feed or feed or 0.0, 8.0, rate))
+            stretches.append((kind, number, points[:-1]))
             here = points[-1]
         stretches.append((BlockKind.RAPID, None, self._line(here, park, rate)))
         return self._assemble([stretch for stretch in stretches if len(stretch[2])])
+
+    def _kind(self, number: int) -> BlockKind:
+        engraved = {contour.number for contour in self.drawing.contours if contour.operation is Operation.ENGRAVE}
+        return BlockKind.ENGRAVE if number in engraved else BlockKind.CUT
 
     def _line(self, start: np.ndarray, end: np.ndarray, rate: float) -> np.ndarray:
         length = float(np.hypot(*(end - start)))
@@ -121,13 +139,14 @@ class Bench:
             blocks.append(Block(kind, first, last, number, "CUT" if number else "", handles))
             first = last + 1
         column = np.repeat(np.arange(len(stretches)), [len(points) for _, _, points in stretches])
-        power = np.array([0.0 if kind is BlockKind.RAPID else self.process.power for kind, _, _ in stretches])[column]
+        powers = {BlockKind.RAPID: 0.0, BlockKind.ENGRAVE: self.process.engrave_power}
+        power = np.array([powers.get(kind, self.process.power) for kind, _, _ in stretches])[column]
         sheet = np.concatenate([points for _, _, points in stretches])
         return Program(
             robot=self.robot,
             placement=self.placement,
             process=self.process,
-            drawing=DrawingRef(self.drawing.file, self.drawing.sha256, self.drawing.metres_per_unit),
+            drawing=DrawingRef.of(self.drawing),
             mode=self.mode,
             blocks=tuple(blocks),
             q=self.robot.inverse(self._to_base(sheet)),
@@ -184,6 +203,8 @@ def bench() -> Bench:
         feed=0.1,
         power=0.85,
         pierce_time=0.05,
+        engrave_feed=0.2,
+        engrave_power=0.15,
     )
     return Bench(robot=load_robot("delta-300"), process=process)
 

@@ -173,6 +173,12 @@ MUTATIONS: dict[str, tuple[Mutation, str]] = {
         ),
         "pierce before every cut",
     ),
+    "a pierce without its cut": (
+        lambda c: set_blocks(
+            c.program, [replace(x, contour=9) if x.kind is BlockKind.PIERCE else x for x in c.program.blocks]
+        ),
+        "cut after every pierce",
+    ),
     "a block index out of the table": (
         lambda c: replace(c.program, block=np.append(c.program.block[:-1], 99)),
         "block table",
@@ -254,7 +260,7 @@ def test_damage_is_found_by_its_check(bench: Bench, program: Program, damage: st
     assert name in found
 
 
-# In test_verify.py.
+# In test_verify.py, the last one in test_engraving.py.
 ELSEWHERE = {
     "joint range (at least)",
     "joint speed",
@@ -262,7 +268,8 @@ ELSEWHERE = {
     "pressure angle",
     "forearm swing",
     "robot",
-}  # test_verify.py
+    "contours cut last",
+}
 
 
 def test_every_check_fails_for_some_damage(bench: Bench, program: Program) -> None:
