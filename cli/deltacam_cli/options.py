@@ -29,9 +29,19 @@ _READING = (
         metavar="UNIT",
         help=f"What one unit of the drawing is: {', '.join(METRES_PER)}; overrides its header.",
     ),
-    click.option("--layer", "layers", metavar="PATTERN", multiple=True, help="Only this layer; may be repeated."),
     click.option(
-        "--ignore-layer", "ignored_layers", metavar="PATTERN", multiple=True, help="Not this layer; may be repeated."
+        "--layer",
+        "layers",
+        metavar="PATTERN",
+        multiple=True,
+        help="Only layers of this name, or like it: CUT*; may be repeated.",
+    ),
+    click.option(
+        "--ignore-layer",
+        "ignored_layers",
+        metavar="PATTERN",
+        multiple=True,
+        help="No layers of this name, or like it; may be repeated.",
     ),
     click.option("--join", metavar="LENGTH", help="Join ends that are up to so far apart, mm unless a unit is given."),
 )
