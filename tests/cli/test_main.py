@@ -37,7 +37,9 @@ def test_help_loads_nothing_heavy(tmp_path: Path) -> None:
     assert "verify" in run.stdout
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["plan", "--help"], ["verify", "--help"], ["--version"]])
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["plan", "--help"], ["verify", "--help"], ["inspect", "--help"], ["--version"]]
+)
 def test_help_and_version_are_on_stdout(tmp_path: Path, arguments: list[str]) -> None:
     run = deltacam(*arguments, folder=tmp_path)
     assert (run.returncode, run.stderr) == (0, "")

@@ -71,7 +71,7 @@ def drawing() -> Drawing:
         contours=machined,
         ledger=ledger,
         findings=findings,
-        conversion_error=1.25e-7,
+        conversion_error=1.3e-7,
         ignored=ignored,
         layers=(
             Layer("CUT", "on", 7, "CONTINUOUS", 7, 7),
