@@ -23,6 +23,7 @@ class Assembled:
 
     Attributes:
         contours: in the order of their numbers.
+        left_open: the numbers of chains that are only ignored because they do not close.
         contour_of: the number of the contour that an entity is part of, by the entity's index.
         notes: what became of the entities that are not machined, by index, and why.
         copies: entities that repeat another one: index to index.
@@ -31,6 +32,7 @@ class Assembled:
     """
 
     contours: list[Contour] = field(default_factory=list)
+    left_open: list[int] = field(default_factory=list)
     contour_of: dict[int, int] = field(default_factory=dict)
     notes: dict[int, tuple[Outcome, str]] = field(default_factory=dict)
     copies: dict[int, int] = field(default_factory=dict)
@@ -94,11 +96,14 @@ def _join(
     ]
     for chain in joined.chains:
         members = tuple(owner[i] for i in chain.members)
+        if operation is Operation.IGNORE:
+            lines.append(_Line(chain.curve, members, operation))
+            continue
         lines.append(
             _Line(
                 chain.curve,
                 members,
-                _if_open(members, operation, assigned, found, result),
+                _if_open(members, assigned, found, result),
                 reason=chain.reason,
                 is_outline=chain.nearly_closed,
                 is_tangle=chain.ambiguous,
@@ -107,12 +112,10 @@ def _join(
     return lines
 
 
-def _if_open(
-    members: tuple[int, ...], operation: Operation, assigned: Assignment, found: Drawn, result: Assembled
-) -> Operation:
+def _if_open(members: tuple[int, ...], assigned: Assignment, found: Drawn, result: Assembled) -> Operation:
     """What is done with an open chain; a finding where its entities do not agree."""
     wanted = [assigned[i].open for i in members]
-    if len(set(wanted)) > 1 and operation is not Operation.IGNORE:
+    if len(set(wanted)) > 1:
         words = " and ".join(dict.fromkeys(wanted))
         what = f"an open chain joins lines for which the process wants different things: {words}"
         hint = "give the layers of the chain the same `open` in the process"
@@ -127,10 +130,12 @@ def _add(number: int, line: _Line, found: Drawn, assigned: Assignment, result: A
     handles = tuple(dict.fromkeys(found.entities[i].handle for i in line.members))
     layer = found.entities[line.members[0]].layer
     result.contours.append(Contour(number, line.curve, layer, handles, operation=line.operation))
+    if line.operation is Operation.IGNORE and line.reason:
+        result.left_open.append(number)
     for i in line.members:
         result.contour_of.setdefault(i, number)
         if line.operation is Operation.IGNORE:
-            result.notes[i] = (Outcome.IGNORED, assigned[i].reason or line.reason)
+            result.notes[i] = (Outcome.IGNORED, line.reason or assigned[i].reason)
     if line.operation is not Operation.IGNORE:
         result.error = max(result.error, line.error + max(found.entities[i].error for i in line.members))
 

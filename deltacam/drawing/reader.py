@@ -66,7 +66,7 @@ def read_drawing(
         *joined.findings,
         *_nothing_to_machine(found, joined),
         *remarks.hidden_layers(table),
-        *remarks.open_chains(joined.contours),
+        *remarks.open_chains(joined.contours[number - 1].layer for number in joined.left_open),
         *remarks.not_cut(found),
         *remarks.paper_space(paper),
         *remarks.drawing_sheet(found.entities, joined.contours),

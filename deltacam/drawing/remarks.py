@@ -8,7 +8,7 @@ from typing import Final
 
 from deltacam.drawing.entities import Drawn, Entity
 from deltacam.geometry import curve as curves
-from deltacam.model import Contour, Finding, Layer, Operation
+from deltacam.model import Contour, Finding, Layer
 from deltacam.units import to_mm
 
 _WORDS: Final = frozenset({"TEXT", "MTEXT", "DIMENSION", "LEADER", "MULTILEADER", "TOLERANCE", "ACAD_TABLE"})
@@ -68,12 +68,16 @@ def paper_space(count: int) -> list[Finding]:
     return [Finding(what, hint="move what is to be cut to the modelspace", kind="paper_space")]
 
 
-def open_chains(chains: Sequence[Contour]) -> list[Finding]:
-    """One finding per layer that counts its open chains that are not machined."""
+def open_chains(layers: Iterable[str]) -> list[Finding]:
+    """One finding per layer that counts the chains that are only ignored because they do not close.
+
+    Args:
+        layers: that of each such chain.
+    """
     hint = "close them in the drawing if they are outlines, or map them to engrave or cut in the process"
     return [
         Finding(f"{counted(count, 'open chain')} not cut", where=f"layer {layer}", hint=hint, kind="open")
-        for layer, count in Counter(chain.layer for chain in chains if chain.operation is Operation.IGNORE).items()
+        for layer, count in Counter(layers).items()
     ]
 
 

@@ -49,8 +49,8 @@ _NOT_FOR_PARTS: Final[dict[int, str]] = {
 _SYSTEMS: Final = {0: "inch", 1: "metric"}
 _IN_FEET: Final = (3, 4)  # engineering and architectural
 
-_LARGE: Final = 60.0 * METRES_PER["in"]
-"""Of real files whose unit is larger than a millimetre, those with larger parts were drawn in millimetres."""
+_LARGE: Final = 40.0 * METRES_PER["in"]
+"""Of real files whose unit is larger than a millimetre, most with larger parts were drawn in millimetres."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -315,6 +315,22 @@ def test_layers_can_be_chosen(reread: Any, selection: Selection, machined: set[s
     assert drawing.selection == selection
 
 
+def test_what_a_layer_leaves_out_is_not_called_open(reread: Any) -> None:
+    drawing = reread(a_plate, selection=Selection(layers=("CUT",)))
+    assert {contour.layer for contour in drawing.ignored} == {"BEND", "Engrave"}
+    assert drawing.findings == ()
+
+
+def test_an_outline_that_is_left_out_makes_no_holes(reread: Any) -> None:
+    def draw(msp: Any) -> None:
+        msp.add_lwpolyline([(0, 0), (100, 0), (100, 100), (0, 100), (0, 0.5)], dxfattribs={"layer": "TABBED"})
+        msp.add_circle((50, 50), 20)
+
+    (hole,) = reread(draw).contours
+    (outline,) = reread(draw, selection=Selection(ignored_layers=("TABBED",))).contours
+    assert (hole.depth, outline.depth) == (1, 0)
+
+
 def test_a_layer_that_is_not_there_is_refused(reread: Any) -> None:
     with pytest.raises(DrawingError, match="no layer of the drawing is called 'CTU'") as caught:
         reread(a_plate, selection=Selection(layers=("CTU",)))
