@@ -1,0 +1,105 @@
+"""Rings in short pieces with small bounding boxes, and which pieces of different rings meet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from deltacam.model import Array, BoolArray, IntArray
+
+_LONGEST: Final = 8
+_BATCH: Final = 1024
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pieces:
+    """P runs of segments of closed polylines, each towards one quarter of the compass.
+
+    Attributes:
+        points: (N, 2) m, the vertices of all rings.
+        after: (N,) the vertex that follows each in its ring.
+        begin: (P,) the first vertex of each piece.
+        last: (P,) the vertex before its last one.
+        ring_of: (P,) its ring.
+        width: (P,) how far it leaves the straight line between its ends, m.
+    """
+
+    points: Array
+    after: IntArray
+    begin: IntArray
+    last: IntArray
+    ring_of: IntArray
+    width: Array
+
+    @classmethod
+    def of(cls, points: Array, ring_of: IntArray) -> Pieces:
+        """The pieces of the rings through points, (N, 2) m, given the ring of each, (N,)."""
+        counts = np.bincount(ring_of)
+        counts = counts[counts > 0]
+        first = np.cumsum(counts) - counts
+        after = np.arange(1, len(points) + 1)
+        after[first + counts - 1] = first
+        x, y = np.sign(points[after] - points).T
+        begins = np.ones(len(points), dtype=np.bool_)
+        begins[1:] = (x[1:] != x[:-1]) | (y[1:] != y[:-1]) | (ring_of[1:] != ring_of[:-1])
+        run = np.cumsum(begins) - 1
+        begins |= (np.arange(len(points)) - np.flatnonzero(begins)[run]) % _LONGEST == 0
+        begin = np.flatnonzero(begins)
+        last = np.append(begin[1:] - 1, len(points) - 1) if len(begin) else begin
+        piece = np.cumsum(begins) - 1
+        away = np.abs(_side(points[begin][piece], points[after[last]][piece], points))
+        width = np.maximum.reduceat(away, begin) if len(begin) else np.zeros(0)
+        return cls(points, after, begin, last, ring_of[begin], width)
+
+    def ends(self, which: IntArray) -> tuple[Array, Array]:
+        """The first and the last point of the pieces of ``which``, (K,): (K, 2) and (K, 2) m."""
+        return self.points[self.begin[which]], self.points[self.after[self.last[which]]]
+
+    def lines(self, which: IntArray) -> Any:
+        """The pieces of ``which``, (K,), as shapely's linestrings."""
+        import shapely
+
+        counts = self.last[which] - self.begin[which] + 2
+        first = np.cumsum(counts) - counts
+        vertex = np.repeat(self.begin[which] - first, counts) + np.arange(counts.sum())
+        vertex[first + counts - 1] = self.after[self.last[which]]
+        return shapely.linestrings(self.points[vertex], indices=np.repeat(np.arange(len(which)), counts))
+
+    def meetings(self, distance: float) -> Iterator[IntArray]:
+        """Pairs of pieces of different rings, (K, 2), no more than ``distance`` m apart, the lower ring first."""
+        import shapely
+
+        start, end = self.ends(np.arange(len(self.begin)))
+        low, high = np.minimum(start, end) - 0.5 * distance, np.maximum(start, end) + 0.5 * distance
+        # The diagonal of a box has the same bounding box and takes less memory.
+        diagonals = shapely.linestrings(np.stack([low, high], axis=1))
+        tree = shapely.STRtree(diagonals)
+        for first in range(0, len(diagonals), _BATCH):
+            one, other = tree.query(diagonals[first : first + _BATCH])
+            one = one + first
+            later = self.ring_of[one] < self.ring_of[other]
+            one, other = one[later], other[later]
+            close = ~(self._apart(one, other, distance) | self._apart(other, one, distance))
+            one, other = one[close], other[close]
+            met = shapely.dwithin(self.lines(one), self.lines(other), distance)
+            yield np.column_stack([one[met], other[met]])
+
+    def _apart(self, one: IntArray, other: IntArray, distance: float) -> BoolArray:
+        """Whether the second of each pair of pieces lies wholly on one side of the first, at more than a distance."""
+        start, end = self.ends(one)
+        ahead, behind = (_side(start, end, points) for points in self.ends(other))
+        room = self.width[one] + self.width[other] + distance
+        return np.asarray((np.minimum(ahead, behind) > room) | (np.maximum(ahead, behind) < -room))
+
+
+def _side(start: Array, end: Array, points: Array) -> Array:
+    """How far points, (K, 2) m, lie to the left of the lines from start to end, (K, 2) m each; (K,) m."""
+    along = end - start
+    reach = np.hypot(*along.T)
+    arm = points - start
+    across = along[:, 0] * arm[:, 1] - along[:, 1] * arm[:, 0]
+    # A piece that ends where it starts has no side; its points lie around its start.
+    return np.asarray(np.where(reach > 0.0, across / np.where(reach > 0.0, reach, 1.0), np.hypot(*arm.T)))
