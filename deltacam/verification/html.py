@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from deltacam.model import Array, Check, Drawing, LedgerEntry, Mode, Report
+from deltacam.model import Array, Check, Drawing, LedgerEntry, Mode, Operation, Report
 from deltacam.program.program import Program
 from deltacam.units import to_mm
 from deltacam.verification.evidence import Evidence, gather
@@ -17,6 +17,7 @@ from deltacam.verification.picture import draw, shown, tool_speeds
 _POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 _COLUMNS: Final = 1000  # of a chart: more setpoints are shown by their smallest and largest values
 _LONG_TABLE: Final = 25  # rows: a longer one of those that few people read is folded
+_DONE: Final = {Operation.CUT: "cut", Operation.ENGRAVE: "engraved"}
 _HANDLES: Final = 3  # of a contour that are named
 _LEFT, _RIGHT = 62.0, 880.0  # of a chart, pixels
 _CROWDED: Final = 18.0  # pixels from one line of a chart to the next, so that both are labelled
@@ -109,12 +110,16 @@ def _tiles(summary: Mapping[str, Any], program: Program) -> str:
     """The figures that matter; those that the summary does not have are left out."""
     minutes, seconds = divmod(program.duration, 60.0)
     shares = {f"{name}, of limit": f"{100 * share:.0f} %" for name, share in summary.get("share_of_limit", {}).items()}
+    engraved = summary.get("contours_engraved", 0)
     size = " \u00d7 ".join(f"{side:.2f}" for side in summary.get("part_size_mm", ()))
     tiles = {
         "time": (f"{minutes:.0f} min " if minutes else "") + f"{seconds:.2f} s",
         "cut length": f"{summary['cut_length_mm']:.1f} mm" if "cut_length_mm" in summary else "",
         "contours cut": str(summary.get("contours_cut", "")),
+        "engraved length": f"{summary.get('engraved_length_mm', 0.0):.1f} mm" if engraved else "",
+        "contours engraved": str(engraved) if engraved else "",
         "part": f"{size} mm" if size else "",
+        "unit of the drawing": str(summary.get("unit", "")),
         **shares,
         "feed": f"{_number(to_mm(program.process.feed))} mm/s",
         "process": program.process.name,
@@ -163,25 +168,27 @@ def _findings(report: Report) -> str:
 
 
 def _contours(evidence: Evidence, drawing: Drawing | None) -> str:
-    """Every contour that is drawn or cut; several cuts of one are added up."""
+    """Every contour that is drawn, cut or engraved; several runs of one are added up."""
     names = {block.contour or 0: (block.layer, block.handles) for block in evidence.program.blocks}
     names |= {contour.number: (contour.layer, contour.handles) for contour in (drawing.contours if drawing else ())}
-    spans = defaultdict(list)
+    spans, operations = defaultdict(list), {}
     for run in evidence.runs:
         spans[run.contour or 0].append(np.arange(run.first, run.end))
+        operations[run.contour or 0] = run.operation
     speed, rows = tool_speeds(evidence), []
     for number in sorted((names.keys() - {0}) | spans.keys()):
         layer, handles = names[number]
-        cells = [str(number or "?"), shown(layer, longest=60), _handles(handles)]
+        done = _DONE[operations[number]] if number in operations else "not done"
+        cells = [str(number or "?"), shown(layer, longest=60), _handles(handles), done]
         ticks = np.concatenate(spans[number]) if number in spans else np.zeros(0, dtype=np.int64)
         if len(ticks) and len(speed):
             length, time = float(speed[ticks].sum()) / evidence.rate, len(ticks) / evidence.rate
             cells += [f"{length:.2f}", f"{time:.3f}", f"{length / time:.1f}", f"{speed[ticks].max():.1f}"]
         else:
-            cells += ["not cut" if not len(ticks) else "unknown", "", "", ""]
+            cells += ["unknown" if len(ticks) else "", "", "", ""]
         rows.append(cells)
-    heads = ("contour", "layer", "handles", "cut, mm", "time, s", "mean, mm/s", "largest, mm/s")
-    return _table(heads, rows, numbers=(3, 4, 5, 6)) if rows else ""
+    heads = ("contour", "layer", "handles", "done", "length, mm", "time, s", "mean, mm/s", "largest, mm/s")
+    return _table(heads, rows, numbers=(4, 5, 6, 7)) if rows else ""
 
 
 def _handles(handles: Sequence[str]) -> str:

@@ -1,4 +1,4 @@
-"""A picture of what a program does to the sheet: one SVG without scripts, the tool's path coloured by its speed.
+"""A picture of what a program does to the sheet: one SVG without scripts, the cuts coloured by the tool's speed.
 
 What is drawn to scale is in whole micrometres of the sheet frame, y up; everything else is in the picture's pixels.
 """
@@ -14,12 +14,13 @@ from typing import Final
 import numpy as np
 
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, BoolArray, Drawing, IntArray
+from deltacam.model import Array, BlockKind, Drawing, IntArray, Operation
 from deltacam.plain import plain
 from deltacam.program.program import Program
 from deltacam.robot.workspace import Workspace
 from deltacam.units import to_mm, to_um
 from deltacam.verification.evidence import LASER_KINDS, Evidence, gather, to_sheet
+from deltacam.verification.thin import thin
 
 _WIDTH: Final = 900.0
 _MARGIN: Final = 36.0
@@ -29,11 +30,12 @@ _ERROR: Final = 1 / 6000  # of the part: how far a drawn path may leave the setp
 _MAX_RUNS: Final = 12_000  # stretches of one colour
 _MAX_NUMBERS: Final = 60  # cuts that are numbered
 _SHEET_SHOWN: Final = 1.4  # how many times smaller the sheet may make the part
+_RAPID, _ENGRAVED, _SUBJECT = range(3)  # what a step is in the picture; the subject is coloured by speed
 _VIRIDIS: Final = ("440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725")
 _STYLE: Final = """
-.dc{--paper:#fff;--ink:#1f2328;--soft:#59636e;--line:#818b98;--part:#eaeef2;--edge:#d1d9e0;LIGHT}
+.dc{--paper:#fff;--ink:#1f2328;--soft:#59636e;--line:#818b98;--part:#eaeef2;--edge:#d1d9e0;--mark:#bf3989;LIGHT}
 @media screen and (prefers-color-scheme:dark){
-.dc{--paper:#151b23;--ink:#f0f6fc;--soft:#9198a1;--line:#767f89;--part:#242d38;--edge:#3d444d;DARK}}
+.dc{--paper:#151b23;--ink:#f0f6fc;--soft:#9198a1;--line:#767f89;--part:#242d38;--edge:#3d444d;--mark:#f778ba;DARK}}
 .dc text{font:13px system-ui,"Segoe UI",Roboto,"Liberation Sans",sans-serif;fill:var(--soft)}
 .dc .number{font-size:12px;font-weight:600;fill:var(--ink);stroke:var(--paper);stroke-width:3px;paint-order:stroke}
 @media (max-width:640px){.dc text{font-size:21px}.dc .number{font-size:18px}}
@@ -41,7 +43,7 @@ _STYLE: Final = """
 
 
 def to_svg(program: Program, *, drawing: Drawing | None) -> str:
-    """One picture of the part, the cuts coloured by tool speed, the rapids and the places where cuts begin.
+    """One picture of the part, the cuts coloured by tool speed, what is engraved, the rapids, and where cuts begin.
 
     Args:
         program: any; where its setpoints are out of the robot's reach, only the drawing is shown.
@@ -59,10 +61,11 @@ def draw(evidence: Evidence, drawing: Drawing | None) -> str:
     view = _View.around(evidence, drawing)
     step, colours, parts = 1.0, 1, [_drawn(drawing, view)]
     if len(evidence.sheet) > 1:
-        subject = _subject(evidence)
+        band = _bands(evidence)
         speed = tool_speeds(evidence)
-        step, colours = speed_colours(speed[subject])
-        parts += [_paths(evidence.sheet, subject, _colour(speed, step, colours), view), _starts(evidence, view)]
+        cut = speed[band == _SUBJECT]
+        step, colours = speed_colours(cut) if len(cut) else (1.0, 0)
+        parts += [_paths(evidence.sheet, band, _colour(speed, step, colours), view), _starts(evidence, view)]
     about = evidence.impossible[1] or f"path within {to_um(view.error) + 1.0:.0f} µm of the setpoints"
     height = view.height + _FOOTER
     return (
@@ -70,7 +73,7 @@ def draw(evidence: Evidence, drawing: Drawing | None) -> str:
         f"<title>{shown(evidence.program.drawing.file)}</title>"
         f"<desc>{view.caption}; tool path coloured by speed; {shown(about)}</desc>"
         f'<style>{_style(colours)}</style><rect width="100%" height="100%" rx="10" fill="var(--paper)"/>'
-        f"{''.join(parts)}{_footer(view, step, colours)}</svg>\n"
+        f"{''.join(parts)}{_footer(view, step, colours, engraved=_engraves(evidence))}</svg>\n"
     )
 
 
@@ -84,10 +87,19 @@ def tool_speeds(evidence: Evidence) -> Array:
     return np.asarray(to_mm(evidence.rate) * np.linalg.norm(np.diff(evidence.tool, axis=0), axis=1))
 
 
-def _subject(evidence: Evidence) -> BoolArray:
-    """Which steps the picture is about, (N - 1,): the cuts, or the whole way where there are none, as in a frame."""
-    cutting = (evidence.is_kind(LASER_KINDS) | (evidence.program.power > 0.0))[: max(len(evidence.tool) - 1, 0)]
-    return cutting if cutting.any() else np.ones_like(cutting)
+def _bands(evidence: Evidence) -> IntArray:
+    """What each step is, (N - 1,): a rapid, engraved, or the subject: the cuts.
+
+    Where nothing is cut and nothing engraved, as in a frame, the subject is the whole way.
+    """
+    steps = max(len(evidence.tool) - 1, 0)
+    on = (evidence.is_kind(LASER_KINDS) | (evidence.program.power > 0.0))[:steps]
+    engraved = evidence.is_kind(frozenset({BlockKind.ENGRAVE}))[:steps]
+    return np.where(engraved, _ENGRAVED, np.where(on | (not on.any()), _SUBJECT, _RAPID))
+
+
+def _engraves(evidence: Evidence) -> bool:
+    return any(run.operation is Operation.ENGRAVE for run in evidence.runs)
 
 
 def speed_colours(speed: Array) -> tuple[float, int]:
@@ -138,7 +150,7 @@ class _View:
     @classmethod
     def around(cls, evidence: Evidence, drawing: Drawing | None) -> _View:
         boxes = [curves.bounds(contour.curve) for contour in drawing.contours] if drawing else []
-        subject = _subject(evidence)
+        subject = _bands(evidence) != _RAPID
         places = (
             evidence.sheet[np.append(subject, False) | np.append(False, subject)] if len(subject) else evidence.sheet
         )
@@ -189,42 +201,53 @@ def _sheet_edge(sheet: Workspace) -> Array:
 def _drawn(drawing: Drawing | None, view: _View) -> str:
     """The sheet's edge and the contours, the material between them filled."""
     sheet = [np.vstack([view.sheet, view.sheet[:1]])] if len(view.sheet) else []
-    loops = [curves.flatten(contour.curve, view.error / 4.0)[0] for contour in (drawing.contours if drawing else ())]
-    style = 'fill="var(--part)" fill-rule="evenodd" stroke="var(--line)" stroke-linejoin="round"'
-    return view.path(sheet, width=1.0, style='class="sheet" fill="none" stroke="var(--edge)"') + view.path(
-        [np.vstack([loop, loop[:1]]) for loop in loops], width=0.7, style=f'class="contours" {style}'
+    edges: list[Array] = []
+    lines: list[Array] = []
+    for contour in drawing.contours if drawing else ():
+        line = curves.flatten(contour.curve, view.error / 4.0)[0]
+        line = np.vstack([line, line[:1]]) if contour.curve.closed else line
+        (edges if contour.has_kerf else lines).append(line)
+    stroke = 'stroke="var(--line)" stroke-linejoin="round"'
+    return (
+        view.path(sheet, width=1.0, style='class="sheet" fill="none" stroke="var(--edge)"')
+        + view.path(edges, width=0.7, style=f'class="contours" fill="var(--part)" fill-rule="evenodd" {stroke}')
+        + view.path(lines, width=0.7, style=f'class="lines" fill="none" {stroke}')
     )
 
 
-def _paths(xy: Array, subject: BoolArray, colour: IntArray, view: _View) -> str:
-    """The rapids as one dashed path, then a path per colour, the slow ones on top because they are short."""
-    first, kind = _stretches(xy, subject, colour, view.error * 3.0)
-    lines = [xy[start : end + 1] for start, end in zip(first, np.append(first[1:], len(subject)), strict=True)]
-    dash = f'class="rapid" fill="none" stroke="var(--line)" stroke-dasharray="{5e6 / view.per_metre:.4g}"'
-    parts = [view.path([line for line, of in zip(lines, kind, strict=True) if of < 0], width=0.8, style=dash)]
-    for value in range(int(kind.max(initial=-1)), -1, -1):
-        style = f'class="speed" fill="none" stroke="var(--c{value})" stroke-linecap="round"'
-        parts.append(
-            view.path([line for line, of in zip(lines, kind, strict=True) if of == value], width=2.0, style=style)
-        )
+def _paths(xy: Array, band: IntArray, colour: IntArray, view: _View) -> str:
+    """The rapids as one dashed path, one of what is engraved, then a path per colour, the short slow ones on top."""
+    first, kind = _stretches(xy, band, colour, view.error * 3.0)
+    lines = [xy[start : end + 1] for start, end in zip(first, np.append(first[1:], len(band)), strict=True)]
+
+    def drawn(of_kind: int, width: float, style: str) -> str:
+        chosen = [line for line, of in zip(lines, kind.tolist(), strict=True) if of == of_kind]
+        return view.path(chosen, width=width, style=f'{style} fill="none"')
+
+    dash = f'stroke="var(--line)" stroke-dasharray="{5e6 / view.per_metre:.4g}"'
+    parts = [drawn(_RAPID - _SUBJECT, 0.8, f'class="rapid" {dash}')]
+    parts.append(drawn(_ENGRAVED - _SUBJECT, 1.6, 'class="engraved" stroke="var(--mark)" stroke-linecap="round"'))
+    values = range(int(kind.max(initial=-1)), -1, -1)
+    parts += [drawn(one, 2.0, f'class="speed" stroke="var(--c{one})" stroke-linecap="round"') for one in values]
     return "".join(parts)
 
 
-def _stretches(xy: Array, subject: BoolArray, colour: IntArray, reach: float) -> tuple[IntArray, IntArray]:
-    """Where the way changes colour: the first step of every stretch, and its colour, -1 for what is not the subject.
+def _stretches(xy: Array, band: IntArray, colour: IntArray, reach: float) -> tuple[IntArray, IntArray]:
+    """Where the way changes colour: the first step of every stretch, and its colour, negative for other bands.
 
     Steps within ``reach`` m of the way share a colour, that of the most unusual speed among them, so that no short stop
     or burst is lost; where there are very many stretches it grows until they are fewer.
     """
-    usual = np.median(colour[subject])
+    subject = band == _SUBJECT
+    usual = np.median(colour[subject]) if subject.any() else 0.0
     length = np.hypot(*np.diff(xy, axis=0).T)
     first, kind = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
     for doubling in range(12):
         cell = np.floor((np.cumsum(length) - length) / (reach * 2.0**doubling))
-        first = np.flatnonzero((np.diff(cell, prepend=-1.0) != 0.0) | np.diff(subject, prepend=not subject[0]))
+        first = np.flatnonzero((np.diff(cell, prepend=-1.0) != 0.0) | (np.diff(band, prepend=-1) != 0))
         slow, fast = np.minimum.reduceat(colour, first), np.maximum.reduceat(colour, first)
-        kind = np.where(subject[first], np.where(fast - usual > usual - slow, fast, slow), -1)
-        change = np.diff(kind, prepend=-2) != 0
+        kind = np.where(subject[first], np.where(fast - usual > usual - slow, fast, slow), band[first] - _SUBJECT)
+        change = np.diff(kind, prepend=-_SUBJECT - 1) != 0
         first, kind = first[change], kind[change]
         if len(first) <= _MAX_RUNS:
             break
@@ -233,17 +256,17 @@ def _stretches(xy: Array, subject: BoolArray, colour: IntArray, reach: float) ->
 
 def _starts(evidence: Evidence, view: _View) -> str:
     """A dot where each cut begins, with its place in the order while there is room for numbers."""
-    parts = []
-    for number, run in enumerate(evidence.runs, start=1):
+    parts, cuts = [], [run for run in evidence.runs if run.operation is Operation.CUT]
+    for number, run in enumerate(cuts, start=1):
         x, y = (evidence.sheet[run.first] * (1.0, -1.0) * view.per_metre + view.origin).tolist()
         name = f"<title>cut {number}: {shown(evidence.place(run.first))}</title>"
         parts.append(f'<circle class="start" cx="{x:.2f}" cy="{y:.2f}" r="3" fill="var(--ink)">{name}</circle>')
-        if len(evidence.runs) < _MAX_NUMBERS:
+        if len(cuts) < _MAX_NUMBERS:
             parts.append(f'<text class="number" x="{x + 5:.2f}" y="{y - 5:.2f}">{number}</text>')
     return "".join(parts)
 
 
-def _footer(view: _View, step: float, colours: int) -> str:
+def _footer(view: _View, step: float, colours: int, *, engraved: bool) -> str:
     """The size, a scale bar, and what the colours and lines stand for."""
     power = 10.0 ** math.floor(math.log10(150.0 / view.per_metre))
     bar = max(power * factor for factor in (1.0, 2.0, 5.0) if power * factor * view.per_metre <= 150.0)
@@ -255,8 +278,12 @@ def _footer(view: _View, step: float, colours: int) -> str:
         f'<text x="{left}" y="{top + 61}">{to_mm(bar):g} mm</text>',
         f'<path d="M{left + 200} {top + 40}h60" stroke="var(--line)" stroke-dasharray="5"/>',
         f'<text x="{left + 200}" y="{top + 61}">rapid</text>',
-        f'<text x="{right}" y="{top + 16}">tool speed, mm/s</text>',
     ]
+    if colours:
+        parts.append(f'<text x="{right}" y="{top + 16}">tool speed, mm/s</text>')
+    if engraved:
+        line = f'<path class="engraved-key" d="M{left + 280} {top + 40}h40" stroke="var(--mark)" stroke-width="1.6"/>'
+        parts.append(f'{line}<text x="{left + 280}" y="{top + 61}">engraved</text>')
     every = 1 if colours < 8 else 2
     for i in range(colours):
         x = right + 30.0 * i
@@ -264,37 +291,3 @@ def _footer(view: _View, step: float, colours: int) -> str:
         if i % every == 0:
             parts.append(f'<text x="{x + 15}" y="{top + 61}" text-anchor="middle">{i * step:g}</text>')
     return "".join(parts)
-
-
-def thin(points: Array, fixed: BoolArray, tolerance: float) -> BoolArray:
-    """Which points are enough to draw a polyline within ``tolerance`` m (Ramer 1972; Douglas and Peucker 1973).
-
-    All stretches between the ``fixed`` points (N,), which stay, are split at once where they are farthest from their
-    chord. The first and the last of the points (N, 2) m are fixed.
-    """
-    kept, place = fixed.copy(), np.arange(len(points))
-    rest = np.flatnonzero(~kept)
-    left = np.maximum.accumulate(np.where(kept, place, 0))[rest]
-    right = np.minimum.accumulate(np.where(kept, place, len(points) - 1)[::-1])[::-1][rest]
-    while len(rest):
-        gap = _gap(points[rest], points[left], points[right])
-        first = np.flatnonzero(np.diff(left, prepend=-1))
-        worst = np.maximum.reduceat(gap, first)
-        count = np.diff(first, append=len(rest))
-        far = np.repeat(worst > tolerance, count)
-        farthest = np.flatnonzero(far & (gap == np.repeat(worst, count)))
-        split = rest[farthest[np.unique(left[farthest], return_index=True)[1]]]
-        kept[split] = True
-        middle = np.repeat(split, count[worst > tolerance])
-        rest, left, right = rest[far], left[far], right[far]
-        left, right = np.where(rest > middle, middle, left), np.where(rest < middle, middle, right)
-        rest, left, right = (values[rest != middle] for values in (rest, left, right))
-    return kept
-
-
-def _gap(point: Array, start: Array, end: Array) -> Array:
-    """The distance of each point from the straight stretch between its start and end, (K,) m."""
-    along, arm = end - start, point - start
-    square = np.sum(along**2, axis=1)
-    share = np.divide(np.sum(arm * along, axis=1), square, out=np.zeros_like(square), where=square > 0.0)
-    return np.asarray(np.linalg.norm(arm - np.clip(share, 0.0, 1.0)[:, None] * along, axis=1))

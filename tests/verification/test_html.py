@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from deltacam.model import Block, BlockKind, Check, Drawing, Finding, LedgerEntry, Mode, Outcome, Report
+from deltacam.model import Block, BlockKind, Check, Drawing, Finding, LedgerEntry, Mode, Operation, Outcome, Report
 from deltacam.program.program import Program
 from deltacam.verification.html import to_html
 from deltacam.verification.verify import verify
@@ -143,9 +143,9 @@ def test_every_contour_has_its_length_time_and_speeds(bench: Bench) -> None:
     circle = rows[1]
     block = next(block for block in program.blocks if block.kind is BlockKind.CUT and block.contour == 2)
     time = (block.last - block.first + 1) / 400.0
-    assert float(circle["cut, mm"]) == pytest.approx(2e3 * np.pi * (6e-3 - 0.1e-3), abs=0.05)
+    assert float(circle["length, mm"]) == pytest.approx(2e3 * np.pi * (6e-3 - 0.1e-3), abs=0.05)
     assert float(circle["time, s"]) == pytest.approx(time, abs=1e-3)
-    assert float(circle["mean, mm/s"]) == pytest.approx(float(circle["cut, mm"]) / time, abs=0.1)
+    assert float(circle["mean, mm/s"]) == pytest.approx(float(circle["length, mm"]) / time, abs=0.1)
     # The law of the bench has its peak at 1.875 of its mean.
     assert float(circle["largest, mm/s"]) == pytest.approx(1.875 * float(circle["mean, mm/s"]), rel=0.01)
 
@@ -154,7 +154,7 @@ def test_a_contour_that_is_not_cut_and_a_cut_that_is_not_drawn_are_in_the_table(
     program = bench.but(order=(4, 2)).program()
     drawing = replace(bench.drawing, contours=bench.drawing.contours[:3])
     rows = page(REPORT, program, drawing).rows("Contours")
-    assert {row["contour"]: row["cut, mm"] == "not cut" for row in rows} == {
+    assert {row["contour"]: row["done"] == "not done" for row in rows} == {
         "1": True,
         "2": False,
         "3": True,
@@ -262,6 +262,21 @@ def test_programs_of_a_few_rows_have_a_page(program: Program, rows: int) -> None
     assert page(verify(few, drawing=None), few).all_of("svg")
 
 
+def test_what_is_engraved_is_told_from_what_is_cut(bench: Bench) -> None:
+    contours = [replace(c, operation=Operation.ENGRAVE) if c.number == 2 else c for c in bench.drawing.contours]
+    drawing = replace(bench.drawing, contours=tuple(contours))
+    paths = bench.paths
+    marked = bench.but(drawing=drawing, order=(2, 4, 3, 1), paths=lambda half: paths(half) | {2: paths(0.0)[2]})
+    program = marked.program()
+    found = page(verify(program, drawing=drawing), program, drawing)
+    assert {row["contour"]: row["done"] for row in found.rows("Contours")} == dict.fromkeys("134", "cut") | {
+        "2": "engraved"
+    }
+    assert f"{2e3 * np.pi * 6e-3:.1f} mm" in found.text_in("dd")
+    assert "contours engraved" in found.text_in("dt")
+    assert "mm (header)" in found.text_in("dd")
+
+
 def test_a_frame_and_a_program_out_of_reach_have_a_page(program: Program) -> None:
     frame = replace(
         program, mode=Mode.FRAME, blocks=(Block(BlockKind.RAPID, 0, len(program.q) - 1),), block=0 * program.block
@@ -272,7 +287,7 @@ def test_a_frame_and_a_program_out_of_reach_have_a_page(program: Program) -> Non
     lost = replace(program, q=q)
     found = page(verify(lost, drawing=None), lost)
     assert "Failed" in found.text_in("p")
-    assert {row["cut, mm"] for row in found.rows("Contours")} == {"unknown"}
+    assert {row["length, mm"] for row in found.rows("Contours")} == {"unknown"}
 
 
 def test_the_same_report_gives_the_same_page(bench: Bench) -> None:

@@ -1,7 +1,7 @@
 """The picture shows what the setpoints do: decoded from its own paths it is the program again."""
 
-import itertools
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 from xml.etree import ElementTree
@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 from shapely import LineString, MultiLineString, Point, distance, points
 
-from deltacam.model import Block, BlockKind, Contour, Drawing, Mode
+from deltacam.geometry import curve as curves
+from deltacam.model import Block, BlockKind, Contour, Curve, Drawing, Mode, Operation
 from deltacam.program.program import Program
-from deltacam.verification.picture import speed_colours, thin, to_svg
+from deltacam.verification.picture import speed_colours, to_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 HOSTILE = "</style><script>alert(1)</script>\"'&]]>\u202e\u2066\x00\x1b[31m\ud800\ufffe\n"
@@ -25,6 +25,9 @@ class Bench(Protocol):
     """The planner of the tests, see conftest."""
 
     drawing: Drawing
+    paths: Callable[[float], dict[int, Curve]]
+
+    def but(self, **changes: object) -> "Bench": ...
 
     def program(self) -> Program: ...
 
@@ -124,6 +127,36 @@ def test_the_coloured_lines_are_the_cuts_and_the_dashed_ones_the_rapids(bench: B
         assert drawn.length == pytest.approx(way.length, rel=2e-3)
 
 
+def test_what_is_engraved_has_a_colour_of_its_own_and_a_place_in_the_legend(bench: Bench) -> None:
+    ring = Contour(5, curves.circle(np.zeros(2), 4e-3), "MARK", ("5A",), operation=Operation.ENGRAVE)
+    line = Curve(points=np.array([(-0.01, 0.012), (0.01, 0.012)]), bulges=np.zeros(1), closed=False)
+    tick = Contour(6, line, "MARK", ("6A",), operation=Operation.ENGRAVE)
+    drawing = replace(bench.drawing, contours=(*bench.drawing.contours, ring, tick))
+    paths = bench.paths
+    marked = bench.but(
+        drawing=drawing, order=(5, 6, 4, 3, 2, 1), paths=lambda half: paths(half) | {5: ring.curve, 6: line}
+    )
+    program = marked.program()
+    picture = parsed(program, drawing)
+    (path,) = of_class(picture, "engraved")
+    found = polylines(path)
+    assert len(found) == 2
+    assert np.hypot(*found[0].T) == pytest.approx(np.full(len(found[0]), 4e-3), abs=tolerance(picture) + 1e-6)
+    assert found[1] == pytest.approx(line.points, abs=2e-6)
+    assert "--mark:#" in picture.find(f"{SVG}style").text
+    assert "engraved" in [text.text for text in picture.iter(f"{SVG}text")]
+    assert [text.text for text in of_class(picture, "number")] == ["1", "2", "3", "4"]
+    (lines,) = of_class(picture, "lines")
+    assert lines.get("fill") == "none"
+    assert len(polylines(lines)) == 2
+    assert len(polylines(of_class(picture, "contours")[0])) == 4
+    only = marked.but(order=(5, 6))
+    assert not of_class(parsed(only.program(), drawing), "speed")
+    plain = parsed(bench.program(), bench.drawing)
+    assert not of_class(plain, "engraved")
+    assert "engraved" not in [text.text for text in plain.iter(f"{SVG}text")]
+
+
 def test_the_material_is_filled_between_the_drawn_contours(bench: Bench) -> None:
     picture = parsed(bench.program(), bench.drawing)
     (path,) = of_class(picture, "contours")
@@ -184,32 +217,6 @@ def test_a_large_program_is_small_and_keeps_its_slowest_and_fastest_tick(bench: 
 def test_colours_that_alternate_at_every_tick_do_not_make_a_large_picture(bench: Bench) -> None:
     program = round_and_round(bench, np.tile([8e-5, 24e-5], 50_000))
     assert len(to_svg(program, drawing=None)) < 400_000
-
-
-@given(
-    arrays(np.int64, st.tuples(st.integers(2, 60), st.just(2)), elements=st.integers(-1000, 1000)),
-    st.lists(st.integers(0, 59), max_size=5),
-    st.floats(1e-6, 1.0),
-)
-def test_thinning_keeps_fixed_points_and_drops_none_that_is_far_from_the_line(
-    grains: np.ndarray, stay: list[int], tolerance: float
-) -> None:
-    way = 1e-3 * grains
-    fixed = np.zeros(len(way), dtype=bool)
-    fixed[[0, -1, *(index for index in stay if index < len(way))]] = True
-    kept = thin(way, fixed, tolerance)
-    assert kept[fixed].all()
-    index = np.flatnonzero(kept)
-    for first, last in itertools.pairwise(index):
-        line = LineString(way[[first, last]])
-        assert all(line.distance(Point(point)) <= tolerance * (1.0 + 1e-9) for point in way[first:last])
-
-
-def test_thinning_leaves_only_the_ends_of_a_straight_line() -> None:
-    way = np.column_stack((np.linspace(0.0, 1.0, 1000), np.linspace(0.0, 2.0, 1000)))
-    fixed = np.zeros(1000, dtype=bool)
-    fixed[[0, -1]] = True
-    assert np.flatnonzero(thin(way, fixed, 1e-9)).tolist() == [0, 999]
 
 
 def test_a_frame_is_coloured_as_a_whole_and_has_no_cuts(bench: Bench) -> None:
