@@ -175,6 +175,7 @@ def attempt(seed: int, folder: Path) -> Trial:
     path.write_bytes(data)
     before = signal.signal(signal.SIGALRM, _stop)
     signal.alarm(TIME_LIMIT)
+    known = _peak()
     started = time.perf_counter()
     try:
         outcome, what = ("read" if read(path) else "looked at"), ""
@@ -186,12 +187,17 @@ def attempt(seed: int, folder: Path) -> Trial:
         signal.alarm(0)
         signal.signal(signal.SIGALRM, before)
     seconds = time.perf_counter() - started
-    memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    memory = _peak()
     if outcome == "refused" and ("\n" in what or not what):
         outcome = "failed"
-    if seconds >= TIME_LIMIT or memory > MEMORY_LIMIT:
+    if seconds >= TIME_LIMIT or memory > max(known, MEMORY_LIMIT):
         outcome, what = "failed", f"{seconds:.1f} s, {memory / 2**20:.0f} MB"
     return Trial(seed, file, outcome, what, seconds, memory)
+
+
+def _peak() -> int:
+    """The most memory that the process ever held, bytes."""
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 def _stop(_signal: int, _frame: FrameType | None) -> None:

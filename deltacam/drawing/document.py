@@ -161,7 +161,10 @@ def _load_binary(data: bytes, file: str) -> Loaded:
 
 
 def _refuse_absurd(groups: Groups, size: int, file: str) -> None:
-    """Raises where ezdxf would take absurdly much memory."""
+    """Raises where there is nothing of a DXF file, or so much of it that ezdxf would take absurdly much memory."""
+    known = census.DRAWN | {"SECTION"}
+    if known.isdisjoint(kind.upper() for kind in set(groups.kinds)):
+        raise DrawingError("this is not a DXF file", where=file, hint="export the drawing as DXF")
     count = len(groups)
     if count > MAX_GROUPS:
         what = f"the file is too large: {count} entities and other objects are more than {MAX_GROUPS}"
@@ -193,9 +196,6 @@ def _recover(groups: Groups, reason: object) -> Loaded | None:
 
 def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
     """What our own reader makes of a file."""
-    known = census.DRAWN | {"SECTION"}
-    if known.isdisjoint(kind.upper() for kind in set(groups.kinds)):
-        raise DrawingError("this is not a DXF file", where=file, hint="export the drawing as DXF")
     for bare in (False, True):
         repaired = repair(groups, file, bare=bare)
         _refuse_empty(repaired, groups, file, reason)
@@ -247,7 +247,7 @@ def _miscounted(groups: Groups) -> tuple[Finding, ...]:
     if not count:
         return ()
     what = f"{count} LWPOLYLINE with another number of vertices than announced (group code 90): some may be missing"
-    return (Finding(what, hint="compare the drawing with what is shown here", kind="recovered"),)
+    return (Finding(what, hint=_SAVE_AGAIN, kind="lost", blocks=True),)
 
 
 def _recovered(how: str) -> Finding:
