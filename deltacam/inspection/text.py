@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 from deltacam.inspection.measures import Measured, kind, kind_in_words, layers, measure, totals
 from deltacam.inspection.similar import pattern, summary
 from deltacam.inspection.table import aligned
 from deltacam.inspection.warning_lines import warning_lines
-from deltacam.model import Contour, Drawing, LedgerEntry, Operation, Outcome
+from deltacam.model import Contour, Drawing, IntArray, LedgerEntry, Operation, Outcome
 from deltacam.plain import plain
 from deltacam.units import METRES_PER, to_mm, to_um
 
@@ -100,38 +101,45 @@ def _contour_table(measured: Measured) -> list[str]:
     lines = ["  contours: " + ", ".join(f"{kinds[name]} {name}" for name in ("outer", "inner", "open"))]
     if not measured.contours:
         return lines
-    groups = _equal_contours(measured)
+    groups = _alike(measured)
     if len(groups) > _MOST_CONTOURS:
         groups = sorted(groups, key=lambda group: _rank(measured.contours[group[0]], measured.lengths[group[0]]))
     rows = [("number", "like it", "kind", "layer", "size mm", "length mm", "segments", "operation")]
-    for i, count in groups[:_MOST_CONTOURS]:
-        contour, arcs = measured.contours[i], int(measured.arcs[i])
+    for group in groups[:_MOST_CONTOURS]:
+        contour = measured.contours[group[0]]
+        kinds_in_words = {kind_in_words(measured.contours[i]) for i in group}
         rows.append(
             (
                 str(contour.number),
-                str(count - 1) if count > 1 else "",
-                kind_in_words(contour),
+                str(len(group) - 1) if len(group) > 1 else "",
+                kind_in_words(contour) if len(kinds_in_words) == 1 else kind_in_words(replace(contour, parent=None)),
                 plain(contour.layer, longest=_NAME),
-                _by(measured.sizes[i].tolist(), unit=""),
-                f"{to_mm(measured.lengths[i]):.2f}",
-                f"{measured.segments[i]}" + (f" ({arcs} arc{'s' if arcs > 1 else ''})" if arcs else ""),
+                _by(measured.sizes[group[0]].tolist(), unit=""),
+                f"{to_mm(measured.lengths[group[0]]):.2f}",
+                _segments(measured.segments[group], measured.arcs[group]),
                 contour.operation.value,
             )
         )
     lines += aligned(rows, right=(0, 1, 4, 5))
-    return [*lines, *_rest(sum(count for _, count in groups[_MOST_CONTOURS:]), "contour")]
+    return [*lines, *_rest(sum(map(len, groups[_MOST_CONTOURS:])), "contour")]
 
 
-def _equal_contours(measured: Measured) -> list[tuple[int, int]]:
-    """The first of contours that look the same in the table, and how many they are, in the order of their numbers."""
+def _alike(measured: Measured) -> list[list[int]]:
+    """The contours in groups of the same kind, layer, operation, size and length, in the order of their numbers."""
     measures = zip(measured.sizes.round(5).tolist(), measured.lengths.round(5).tolist(), strict=True)
-    shapes = zip(measured.contours, measures, measured.segments.tolist(), measured.arcs.tolist(), strict=True)
     groups: dict[tuple[object, ...], list[int]] = {}
-    for i, (contour, (size, length), segments, arcs) in enumerate(shapes):
-        key = (kind_in_words(contour), contour.layer, contour.operation, *size, length, segments, arcs)
-        group = groups.setdefault(key, [i, 0])
-        group[1] += 1
-    return [(first, count) for first, count in groups.values()]
+    for i, (contour, (size, length)) in enumerate(zip(measured.contours, measures, strict=True)):
+        groups.setdefault((kind(contour), contour.layer, contour.operation, *size, length), []).append(i)
+    return list(groups.values())
+
+
+def _segments(segments: IntArray, arcs: IntArray) -> str:
+    """How many segments some contours have: ``4``, ``26 to 28``, and how many arcs: ``2 (2 arcs)``."""
+    few, many = int(segments.min()), int(segments.max())
+    if few != many:
+        return f"{few} to {many}"
+    bent = int(arcs.max())
+    return f"{few}" + (f" ({bent} arc{'s' if bent > 1 else ''})" if bent and bent == arcs.min() else "")
 
 
 def _rank(contour: Contour, length: float) -> tuple[bool, int, float]:
