@@ -8,6 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from deltacam.drawing.rings import batches
 from deltacam.model import Array, BoolArray, IntArray
 
 _LONGEST: Final = 8
@@ -20,52 +21,47 @@ class Pieces:
 
     Attributes:
         points: (N, 2) m, the vertices of all rings.
-        after: (N,) the vertex that follows each in its ring.
         begin: (P,) the first vertex of each piece.
-        last: (P,) the vertex before its last one.
+        end: (P,) its last vertex.
+        inner: (P,) the last vertex before that.
         ring_of: (P,) its ring.
         width: (P,) how far it leaves the straight line between its ends, m.
     """
 
     points: Array
-    after: IntArray
     begin: IntArray
-    last: IntArray
+    end: IntArray
+    inner: IntArray
     ring_of: IntArray
     width: Array
 
     @classmethod
     def of(cls, points: Array, ring_of: IntArray) -> Pieces:
-        """The pieces of the rings through points, (N, 2) m, given the ring of each, (N,)."""
-        counts = np.bincount(ring_of)
-        counts = counts[counts > 0]
-        first = np.cumsum(counts) - counts
-        after = np.arange(1, len(points) + 1)
-        after[first + counts - 1] = first
-        x, y = np.sign(points[after] - points).T
-        begins = np.ones(len(points), dtype=np.bool_)
-        begins[1:] = (x[1:] != x[:-1]) | (y[1:] != y[:-1]) | (ring_of[1:] != ring_of[:-1])
-        run = np.cumsum(begins) - 1
-        begins |= (np.arange(len(points)) - np.flatnonzero(begins)[run]) % _LONGEST == 0
-        begin = np.flatnonzero(begins)
-        last = np.append(begin[1:] - 1, len(points) - 1) if len(begin) else begin
-        piece = np.cumsum(begins) - 1
-        away = np.abs(_side(points[begin][piece], points[after[last]][piece], points))
-        width = np.maximum.reduceat(away, begin) if len(begin) else np.zeros(0)
-        return cls(points, after, begin, last, ring_of[begin], width)
+        """The pieces of the rings through points, (N, 2) m, given the ring of each, (N,), in ascending order."""
+        first = np.flatnonzero(np.diff(ring_of, prepend=-1))
+        bounds = np.append(first, len(points))
+        parts = []
+        for which in batches(len(first)):
+            low = int(bounds[which[0]])
+            begin, end, inner, width = _split(points[low : bounds[which[-1] + 1]], bounds[which] - low)
+            parts.append((begin + low, end + low, inner + low, width))
+        nothing = np.zeros(0, dtype=np.int64)
+        begin, end, inner = (np.concatenate([nothing, *(part[k] for part in parts)]) for k in range(3))
+        width = np.concatenate([np.zeros(0), *(part[3] for part in parts)])
+        return cls(points, begin, end, inner, ring_of[begin], width)
 
     def ends(self, which: IntArray) -> tuple[Array, Array]:
         """The first and the last point of the pieces of ``which``, (K,): (K, 2) and (K, 2) m."""
-        return self.points[self.begin[which]], self.points[self.after[self.last[which]]]
+        return self.points[self.begin[which]], self.points[self.end[which]]
 
     def lines(self, which: IntArray) -> Any:
         """The pieces of ``which``, (K,), as shapely's linestrings."""
         import shapely
 
-        counts = self.last[which] - self.begin[which] + 2
+        counts = self.inner[which] - self.begin[which] + 2
         first = np.cumsum(counts) - counts
         vertex = np.repeat(self.begin[which] - first, counts) + np.arange(counts.sum())
-        vertex[first + counts - 1] = self.after[self.last[which]]
+        vertex[first + counts - 1] = self.end[which]
         return shapely.linestrings(self.points[vertex], indices=np.repeat(np.arange(len(which)), counts))
 
     def meetings(self, distance: float) -> Iterator[IntArray]:
@@ -93,6 +89,23 @@ class Pieces:
         ahead, behind = (_side(start, end, points) for points in self.ends(other))
         room = self.width[one] + self.width[other] + distance
         return np.asarray((np.minimum(ahead, behind) > room) | (np.maximum(ahead, behind) < -room))
+
+
+def _split(points: Array, first: IntArray) -> tuple[IntArray, IntArray, IntArray, Array]:
+    """Begin, end, inner and width of the pieces of rings that begin at ``first`` in points, (N, 2) m."""
+    after = np.arange(1, len(points) + 1)
+    after[np.append(first[1:], len(points)) - 1] = first
+    x, y = np.sign(points[after] - points).T
+    begins = np.ones(len(points), dtype=np.bool_)
+    begins[1:] = (x[1:] != x[:-1]) | (y[1:] != y[:-1])
+    begins[first] = True
+    run = np.cumsum(begins) - 1
+    begins |= (np.arange(len(points)) - np.flatnonzero(begins)[run]) % _LONGEST == 0
+    begin = np.flatnonzero(begins)
+    inner = np.append(begin[1:] - 1, len(points) - 1)
+    piece = np.cumsum(begins) - 1
+    away = np.abs(_side(points[begin][piece], points[after[inner]][piece], points))
+    return begin, after[inner], inner, np.maximum.reduceat(away, begin)
 
 
 def _side(start: Array, end: Array, points: Array) -> Array:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BoolArray, IntArray
+
+_BATCH: Final = 4096
 
 
 def signed_areas(pack: Pack) -> Array:
@@ -52,6 +56,19 @@ def flatten(pack: Pack, sagitta: float) -> tuple[Array, IntArray]:
     The vertices are among them; a chord between neighbours leaves its arc by no more than ``sagitta`` m, and a piece
     of an arc turns by no more than a quarter. A closed curve does not repeat its first point.
     """
+    parts = [_flattened(pack.take(which), sagitta) for which in batches(len(pack))]
+    points = np.concatenate([np.zeros((0, 2)), *(part[0] for part in parts)])
+    curve = [part[1] + k * _BATCH for k, part in enumerate(parts)]
+    return points, np.concatenate([np.zeros(0, dtype=np.int64), *curve])
+
+
+def batches(count: int) -> list[IntArray]:
+    """The indices of ``count`` curves in batches that keep what is worked out on the way small."""
+    return [np.arange(first, min(first + _BATCH, count)) for first in range(0, count, _BATCH)]
+
+
+def _flattened(pack: Pack, sagitta: float) -> tuple[Array, IntArray]:
+    """What ``flatten`` returns, in one go."""
     step, chord = pack.chords()
     turn = 4.0 * np.arctan(pack.bulges)
     half = 0.5 * np.abs(turn)
