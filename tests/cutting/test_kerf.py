@@ -12,7 +12,7 @@ from deltacam.cutting import trace
 from deltacam.cutting.kerf import offset
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
-from deltacam.model import Curve
+from deltacam.model import Contour, Curve, Operation
 from tests.strategies import contour, rectangle, slot, star_curves
 
 
@@ -187,6 +187,58 @@ def test_an_island_nearer_than_the_kerf_to_its_hole_is_refused() -> None:
     island = contour(curves.circle(np.zeros(2), 0.01), number=2, depth=2, parent=1)
     with pytest.raises(InfeasibleError, match="wider than the gap"):
         offset([hole, island], kerf=2e-4)
+
+
+def straight(start: tuple[float, float], end: tuple[float, float]) -> Curve:
+    return Curve(points=np.array([start, end]), bulges=np.zeros(1), closed=False)
+
+
+def line_of(curve: Curve, number: int, operation: Operation) -> Contour:
+    return Contour(number=number, curve=curve, layer="LINES", handles=(f"{number:X}",), operation=operation)
+
+
+@pytest.mark.parametrize("operation", [Operation.CUT, Operation.ENGRAVE])
+def test_an_open_line_is_followed_itself(operation: Operation) -> None:
+    drawn = straight((0.0, 0.0), (0.01, 0.0))
+    (cut,) = offset([line_of(drawn, 3, operation)], kerf=2e-4).cuts
+    assert cut.curve is drawn
+    assert (cut.contour, cut.layer, cut.handles, cut.operation) == (3, "LINES", ("3",), operation)
+
+
+def test_engraving_may_touch_and_cross_anything_and_is_never_swallowed() -> None:
+    part = contour(rectangle(0.02, 0.02), number=1)
+    lines = [
+        line_of(rectangle(0.02, 0.02), 2, Operation.ENGRAVE),
+        line_of(curves.circle(np.array([0.02, 0.02]), 5e-5), 3, Operation.ENGRAVE),
+        line_of(straight((-0.01, 0.01), (0.03, 0.01)), 4, Operation.ENGRAVE),
+    ]
+    result = offset([part, *lines], kerf=3e-4)
+    assert result.findings == ()
+    assert [cut.curve is line.curve for cut, line in zip(result.cuts[1:], lines, strict=True)] == [True] * 3
+    assert curves.signed_area(result.cuts[0].curve) > 0.02**2
+
+
+@pytest.mark.parametrize(
+    ("end", "meets"), [((0.03, 0.01), True), ((0.02, 0.01), True), ((0.01992, 0.01), True), ((0.01988, 0.01), False)]
+)
+def test_a_slot_that_opens_the_edge_of_a_part_is_reported(end: tuple[float, float], meets: bool) -> None:
+    part = contour(rectangle(0.02, 0.02), number=1)
+    slit = line_of(straight((0.01, 0.01), end), 2, Operation.CUT)
+    findings = offset([part, slit], kerf=2e-4).findings
+    assert len(findings) == int(meets)
+    if meets:
+        (finding,) = findings
+        assert "contour 1 (layer CUT, #1) at (20.000, 10.000) mm" in finding.what
+        assert finding.where == "contour 2 (layer LINES, #2)"
+        assert (finding.kind, finding.blocks) == ("touching", False)
+        assert finding.place == pytest.approx((0.02, 0.01))
+
+
+def test_many_slots_that_open_edges_are_one_finding() -> None:
+    part = contour(rectangle(0.02, 0.02), number=1)
+    slits = [line_of(straight((0.01, y), (0.025, y)), n, Operation.CUT) for n, y in enumerate((4e-3, 8e-3), start=2)]
+    (finding,) = offset([part, *slits], kerf=2e-4).findings
+    assert finding.what.startswith("2 open lines that are cut meet the edge of a part")
 
 
 def test_a_ring_that_cannot_be_traced_falls_back_to_its_own_lines(monkeypatch: pytest.MonkeyPatch) -> None:

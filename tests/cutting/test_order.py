@@ -1,13 +1,14 @@
 """The order of the cuts."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from deltacam.cutting.order import order
 from deltacam.geometry import curve as curves
-from deltacam.model import Cut
+from deltacam.model import Curve, Cut, Operation
 
 
 def ring(number: int, x: float, y: float, radius: float = 1e-3) -> Cut:
@@ -64,6 +65,70 @@ def test_the_same_cuts_give_the_same_order() -> None:
     parents = dict.fromkeys(range(1, 30))
     one, two = (order(cuts, parents=parents, start=(0.0, 0.0)) for _ in range(2))
     assert [cut.contour for cut in one] == [cut.contour for cut in two]
+
+
+def line(number: int, start: tuple[float, float], end: tuple[float, float], operation: Operation) -> Cut:
+    curve = Curve(points=np.array([start, end]), bulges=np.zeros(1), closed=False)
+    return Cut(contour=number, layer="0", handles=("1",), curve=curve, operation=operation)
+
+
+def test_engraving_comes_first_then_open_cuts_then_contours() -> None:
+    cuts = [
+        ring(1, 0.0, 0.0, 0.05),
+        line(2, (0.01, 0.0), (0.02, 0.0), Operation.CUT),
+        replace(ring(3, 0.1, 0.1), operation=Operation.ENGRAVE),
+        line(4, (-0.2, 0.0), (-0.3, 0.0), Operation.ENGRAVE),
+        ring(5, 0.0, 0.0, 0.01),
+    ]
+    parents = {1: 3, 2: 1, 3: None, 4: 1, 5: 1}
+    ordered = order(cuts, parents=parents, start=(0.0, 0.0))
+    numbers = [cut.contour for cut in ordered]
+    assert (sorted(numbers[:2]), numbers[2:]) == ([3, 4], [2, 5, 1])
+    assert [cut.operation for cut in ordered] == [Operation.ENGRAVE] * 2 + [Operation.CUT] * 3
+
+
+def test_open_lines_are_run_from_the_nearer_end_and_left_at_the_other() -> None:
+    zigzag = [line(n, (0.01, 1e-3 * n), (0.11, 1e-3 * n), Operation.ENGRAVE) for n in range(1, 9)]
+    ordered = order(zigzag, parents=dict.fromkeys(range(1, 9)), start=(0.0, 0.0))
+    assert [cut.contour for cut in ordered] == list(range(1, 9))
+    for before, after in itertools.pairwise(ordered):
+        assert after.curve.points[0] == pytest.approx(before.curve.points[-1] + [0.0, 1e-3])
+    assert all(not cut.curve.closed and curves.length(cut.curve) == pytest.approx(0.1) for cut in ordered)
+
+
+def test_a_contour_begins_where_the_last_open_line_ended() -> None:
+    (_, outline) = order(
+        [ring(1, 0.0, 0.0, 0.05), line(2, (0.0, 0.0), (0.0, 0.04), Operation.CUT)],
+        parents={1: None, 2: 1},
+        start=(-0.01, 0.0),
+    )
+    assert outline.curve.points[0] == pytest.approx([0.0, 0.05], abs=1e-9)
+
+
+def best_travel(lines: list[Cut], start: tuple[float, float]) -> float:
+    """Over every order and every way round."""
+    ends = np.array([cut.curve.points for cut in lines])
+    best = np.inf
+    for sequence in itertools.permutations(range(len(lines))):
+        # The shortest way so far that ends at the last point of the line before, and at its first one.
+        cost = {0: 0.0}
+        here = {0: np.array(start)}
+        for index in sequence:
+            reached = {way: min(cost[k] + np.hypot(*(ends[index][1 - way] - here[k])) for k in cost) for way in (0, 1)}
+            cost, here = reached, {way: ends[index][way] for way in (0, 1)}
+        best = min(best, *(cost[k] + np.hypot(*(np.array(start) - here[k])) for k in cost))
+    return best
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_six_open_lines_are_near_the_best_order_of_all(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    places = rng.uniform(-0.1, 0.1, (6, 2, 2))
+    lines = [line(n, tuple(a), tuple(b), Operation.ENGRAVE) for n, (a, b) in enumerate(places, start=1)]
+    ordered = order(lines, parents=dict.fromkeys(range(1, 7)), start=(0.0, 0.0))
+    begins = np.array([*(cut.curve.points[0] for cut in ordered), (0.0, 0.0)])
+    ends = np.array([(0.0, 0.0), *(cut.curve.points[-1] for cut in ordered)])
+    assert float(np.hypot(*(begins - ends).T).sum()) <= 1.25 * best_travel(lines, (0.0, 0.0))
 
 
 def test_no_cuts_need_no_order() -> None:
