@@ -183,3 +183,31 @@ def test_no_content_gives_another_error(tmp_path_factory: pytest.TempPathFactory
     path.write_bytes(content)
     with suppress(RobotError):
         read_table(path, error=RobotError).finish()
+
+
+def test_tables_that_come_several_times_are_read_one_by_one(write: Write) -> None:
+    top = read_table(write("[[part]]\nn = 1\n[[part]]\nn = 2\nm = 3\n"), error=RobotError)
+    first, second = top.tables("part")
+    assert (first.integer("n", minimum=0, maximum=9), second.integer("n", minimum=0, maximum=9)) == (1, 2)
+    assert second.where == "some.toml [part 2]"
+    with pytest.raises(RobotError, match=r"unknown key 'm' in \[part 2\]"):
+        top.finish()
+    assert read_table(write("a = 1\n"), error=RobotError).tables("part") == ()
+
+
+@pytest.mark.parametrize("content", ["[part]\nn = 1\n", "part = 1\n", "part = [1]\n", "part = [{n = 1}, 2]\n"])
+def test_what_should_come_several_times_must_be_tables(write: Write, content: str) -> None:
+    with pytest.raises(RobotError, match="must be sections") as caught:
+        read_table(write(content), error=RobotError).tables("part")
+    assert "[[part]]" in caught.value.hint
+
+
+def test_a_name_may_stand_for_a_whole_number() -> None:
+    names = {"red": 1, "yellow": 2}
+    assert table(color="yellow").integer("color", minimum=1, maximum=9, names=names) == 2
+    assert table(color=7).integer("color", minimum=1, maximum=9, names=names) == 7
+    with pytest.raises(RobotError, match="is not") as caught:
+        table(color="yelow").integer("color", minimum=1, maximum=9, names=names)
+    assert "yellow" in caught.value.hint
+    with pytest.raises(RobotError, match="not a whole number"):
+        table(color="yellow").integer("color", minimum=1, maximum=9)

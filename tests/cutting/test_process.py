@@ -7,6 +7,7 @@ import pytest
 
 from deltacam.cutting.process import check_process, load_process, process_names
 from deltacam.errors import ProcessError
+from deltacam.model import DEFAULT_RULES, Operation, Rule
 
 GOOD = 'name = "card"\nkerf_mm = 0.2\nfeed_m_min = 6\n'
 
@@ -53,12 +54,107 @@ def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, text: str, says: str) 
     assert says in f"{caught.value.what} {caught.value.where} {caught.value.hint}"
 
 
+RULES = (
+    GOOD
+    + """
+open = "cut"
+
+[engrave]
+feed_m_min = 12
+power = 0.2
+
+[[operations]]
+layer = "ENGRAVE*"
+color = "red"
+linetype = "DASHED*"
+do = "engrave"
+
+[[operations]]
+color = 30
+do = "ignore"
+
+[[operations]]
+layer = "SLITS"
+do = "cut"
+
+[[operations]]
+do = "cut"
+open = "engrave"
+"""
+)
+
+
+def test_rules_are_read_in_order(tmp_path: Path) -> None:
+    process = load_process(write(tmp_path, RULES))
+    cut, engrave, ignore = Operation.CUT, Operation.ENGRAVE, Operation.IGNORE
+    assert process.rules == (
+        Rule(engrave, layer="ENGRAVE*", color=1, linetype="DASHED*", open=engrave),
+        Rule(ignore, color=30, open=ignore),
+        Rule(cut, layer="SLITS", open=cut),
+        Rule(cut, open=engrave),
+    )
+    assert process.open is cut
+    assert (process.engrave_feed, process.engrave_power) == pytest.approx((0.2, 0.2))
+
+
+def test_without_rules_there_are_the_default_ones_and_none_can_be_asked_for(tmp_path: Path) -> None:
+    process = load_process(write(tmp_path, GOOD))
+    assert process.rules == DEFAULT_RULES
+    assert process.open is Operation.IGNORE
+    assert (process.engrave_feed, process.engrave_power) == (None, None)
+    assert load_process(write(tmp_path, GOOD + "operations = []\n")).rules == ()
+
+
+@pytest.mark.parametrize("name", process_names())
+def test_a_built_in_process_can_engrave_faster_and_weaker_than_it_cuts(name: str) -> None:
+    process = load_process(name)
+    assert (process.engrave_feed or 0.0) > process.feed
+    assert 0.0 < (process.engrave_power or 0.0) < process.power
+    assert "engraving" in process.source
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("open = 'burn'", 'open = \'burn\' is not "cut" or "engrave" or "ignore"'),
+        ("engrave = 1", "engrave = 1 must be a section"),
+        ("[engrave]\npower = 0.2", "feed_m_min is missing"),
+        ("[engrave]\nfeed_m_min = 1", "power is missing"),
+        ("[engrave]\nfeed_m_min = 1\npower = 2", "power = 2 is outside"),
+        ("[engrave]\nfeed_m_min = 1\npower = 1\npierce_time_s = 1", "unknown key 'pierce_time_s'"),
+        ("[operations]\ndo = 'cut'", "write [[operations]] above each"),
+        ("[[operations]]\nlayer = 'A'", "do is missing"),
+        ("[[operations]]\ndo = 'etch'", "do = 'etch' is not"),
+        ("[[operations]]\ndo = 'cut'\nlayer = ' '", "layer is empty"),
+        ("[[operations]]\ndo = 'cut'\ncolor = 0", "color = 0 is outside 1 to 255"),
+        ("[[operations]]\ndo = 'cut'\ncolor = 'purple'", "color = 'purple' is not \"red\""),
+        ("[[operations]]\ndo = 'cut'\ncolor = 1.5", "not a whole number"),
+        ("[[operations]]\ndo = 'cut'\nlayers = 'A'", "did you mean 'layer'"),
+        ("[[operations]]\ndo = 'ignore'\nopen = 'cut'", "open says nothing"),
+        ("[[operations]]\ndo = 'cut'\n[[operations]]\ndo = 'cut'\ncolor = 1", "never used"),
+    ],
+)
+def test_what_is_wrong_with_a_rule_is_named(tmp_path: Path, text: str, says: str) -> None:
+    with pytest.raises(ProcessError) as caught:
+        load_process(write(tmp_path, f"{GOOD}{text}\n"))
+    assert says in f"{caught.value.what} {caught.value.hint}"
+    assert caught.value.where.startswith("card.toml")
+
+
+def test_the_wrong_rule_is_counted(tmp_path: Path) -> None:
+    with pytest.raises(ProcessError) as caught:
+        load_process(write(tmp_path, GOOD + "[[operations]]\ndo='cut'\ncolor=1\n[[operations]]\ndo='weld'\n"))
+    assert caught.value.where == "card.toml [operations 2]"
+
+
 def test_an_unknown_name_is_answered_with_the_nearest() -> None:
     with pytest.raises(ProcessError, match="acrylic-3mm-co2"):
         load_process("acrylic-3mm")
 
 
-@pytest.mark.parametrize(("key", "value"), [("kerf", -1e-4), ("kerf", 1.0), ("feed", 0.0), ("tolerance", 1e-7)])
+@pytest.mark.parametrize(
+    ("key", "value"), [("kerf", -1e-4), ("kerf", 1.0), ("feed", 0.0), ("tolerance", 1e-7), ("engrave_feed", 0.0)]
+)
 def test_a_single_value_out_of_range_is_refused(key: str, value: float) -> None:
-    with pytest.raises(ProcessError, match=key):
+    with pytest.raises(ProcessError, match=key.removeprefix("engrave_")):
         check_process(replace(load_process("steel-1mm-fibre"), **{key: value}))

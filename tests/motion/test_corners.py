@@ -108,3 +108,35 @@ def test_a_line_that_almost_touches_an_arc_is_no_stop(kink: float, radius: float
         assert parts[0].points[-1] == pytest.approx(end)  # the first stop is the sharp corner after the second line
         assert worst_kink(parts[0]) < 1e-5
         assert np.abs(curves.curvatures(parts[0])).max() < 1.3 / radius
+
+
+@settings(max_examples=100)
+@given(star_curves(low=1e-3, high=40e-3), st.floats(1e-6, 1e-4))
+def test_an_open_line_is_driven_from_end_to_end(closed: Curve, deviation: float) -> None:
+    curve = Curve(points=closed.points, bulges=closed.bulges[:-1], closed=False)
+    assume(curves.lengths(curve).min() > 1e-5)
+    parts = pieces(curve, corner="round", deviation=deviation)
+    driven = np.concatenate([flat(part) for part in parts])
+    assert shapely.distance(shapely.points(driven), shapely.LineString(flat(curve))).max() <= deviation + 2e-8
+    assert shapely.distance(shapely.points(flat(curve)), shapely.LineString(driven)).max() <= deviation + 2e-8
+    assert max(worst_kink(part) for part in parts) < 1e-5
+    assert driven[[0, -1]] == pytest.approx(curve.points[[0, -1]])
+    stopped = pieces(curve, corner="stop", deviation=deviation)
+    assert len(stopped) <= len(curve.points) - 1
+    assert sum(curves.length(part) for part in stopped) == pytest.approx(curves.length(curve), rel=1e-3)
+
+
+@pytest.mark.parametrize("sliver", [0, 1, 2])
+def test_slivers_of_an_open_line_are_left_out_but_not_its_ends(sliver: int) -> None:
+    x = np.insert([0.0, 0.01, 0.02], sliver + 1, [0.0, 0.01, 0.02][sliver] + 2e-7)
+    curve = Curve(points=np.column_stack([np.sort(x), np.zeros(4)]), bulges=np.zeros(3), closed=False)
+    (part,) = pieces(curve, corner="stop", deviation=DEVIATION)
+    assert part.points[[0, -1], 0] == pytest.approx(curve.points[[0, -1], 0], abs=1e-12)
+    assert curves.lengths(part).min() > 1e-3
+
+
+def test_a_line_of_one_segment_stays_as_it_is() -> None:
+    curve = Curve(points=np.array([[0.0, 0.0], [0.01, 0.0]]), bulges=np.array([0.4]), closed=False)
+    (part,) = pieces(curve, corner="round", deviation=DEVIATION)
+    assert part.points == pytest.approx(curve.points)
+    assert part.bulges == pytest.approx(curve.bulges)

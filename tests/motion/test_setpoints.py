@@ -1,6 +1,7 @@
 """The setpoints, seen only through differences and forward kinematics."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,8 +9,9 @@ import shapely
 
 from deltacam.cutting.kerf import offset
 from deltacam.cutting.process import load_process
+from deltacam.errors import ProcessError
 from deltacam.geometry import curve as curves
-from deltacam.model import Block, BlockKind, Curve, Cut, Mode, Placement
+from deltacam.model import Block, BlockKind, Curve, Cut, Mode, Operation, Placement, Process
 from deltacam.motion.parametrize import Limits, parametrize
 from deltacam.motion.path import straight
 from deltacam.motion.setpoints import Setpoints, plan_frame, plan_motion, sample
@@ -112,6 +114,72 @@ def test_a_move_shorter_than_a_tick_still_takes_one() -> None:
     assert len(sample(path, parametrize(path, ROBOT, Limits(10.0, 23.0), where=""), ROBOT)) == 1
 
 
+ENGRAVING = replace(PROCESS, engrave_feed=0.08, engrave_power=0.15)
+ZIGZAG = Curve(
+    points=np.array([[0.0, 0.0], [0.01, 0.0], [0.01, 0.005], [0.02, 0.005]]), bulges=np.array([0, 0.3, 0]), closed=False
+)
+
+
+def line(curve: Curve, operation: Operation, number: int = 7) -> Cut:
+    return Cut(contour=number, layer="MARK", handles=("7",), curve=curve, operation=operation)
+
+
+def planned_lines(*lines: Cut, process: Process = ENGRAVING, mode: Mode = Mode.CUT) -> Setpoints:
+    return plan_motion(lines, robot=ROBOT, process=process, placement=PLACE, drawing_error=0.0, mode=mode)
+
+
+@pytest.mark.parametrize("corner", ["round", "stop"])
+@pytest.mark.parametrize("operation", [Operation.CUT, Operation.ENGRAVE])
+def test_an_open_line_is_run_from_end_to_end_and_from_rest_to_rest(operation: Operation, corner: str) -> None:
+    points = planned_lines(line(ZIGZAG, operation), process=replace(ENGRAVING, corner=corner))
+    kind = BlockKind.ENGRAVE if operation is Operation.ENGRAVE else BlockKind.CUT
+    (block,) = [b for b in points.blocks if b.kind is kind]
+    xy = ROBOT.forward(points.q)[:, :2]
+    placed = curves.transform(ZIGZAG, rotation=PLACE.rotation, shift=(PLACE.x, PLACE.y))
+    assert xy[block.first] == pytest.approx(placed.points[0], abs=1e-9)
+    assert xy[block.last + 1] == pytest.approx(placed.points[-1], abs=1e-9)
+    drawn = shapely.LineString(curves.flatten(placed, 1e-8)[0])
+    run = xy[block.first : block.last + 2]
+    assert shapely.distance(shapely.points(run), drawn).max() <= PROCESS.tolerance
+    assert shapely.LineString(run).length == pytest.approx(drawn.length, rel=0.01)
+    rest = 0.5 * ROBOT.tool.max_acceleration * TICK**2 * 1.001
+    assert np.hypot(*np.diff(run, axis=0)[[0, -1]].T).max() <= rest
+    if corner == "stop":
+        (place,) = placed.points[[1]]
+        assert np.hypot(*(run - place).T).min() < 1e-9
+
+
+def test_engraving_has_its_own_feed_and_power_and_no_pierce() -> None:
+    points = planned_lines(
+        line(slot(0.03, 0.01), Operation.ENGRAVE, 1), line(ZIGZAG, Operation.ENGRAVE, 2), *cuts(slot(0.05, 0.03))
+    )
+    kinds = [b.kind for b in points.blocks]
+    assert kinds == ["rapid", "engrave", "rapid", "engrave", "rapid", "pierce", "cut", "rapid"]
+    engraved = np.isin(points.block, [i for i, kind in enumerate(kinds) if kind is BlockKind.ENGRAVE])
+    speed = np.hypot(*np.diff(ROBOT.forward(points.q)[:, :2], axis=0).T) / TICK
+    assert 0.99 * 0.08 < speed[engraved[:-1]].max() <= 0.08 * 1.0001
+    assert set(points.power[engraved]) == {0.15}
+    cut = np.isin(points.block, [i for i, kind in enumerate(kinds) if kind in {BlockKind.PIERCE, BlockKind.CUT}])
+    assert set(points.power[cut]) == {PROCESS.power}
+    assert not points.power[~engraved & ~cut].any()
+    assert not planned_lines(line(ZIGZAG, Operation.ENGRAVE), mode=Mode.DRY_RUN).power.any()
+
+
+def test_an_open_cut_is_pierced() -> None:
+    kinds = [b.kind for b in planned_lines(line(ZIGZAG, Operation.CUT)).blocks]
+    assert kinds == ["rapid", "pierce", "cut", "rapid"]
+
+
+@pytest.mark.parametrize("missing", ["engrave_feed", "engrave_power"])
+def test_a_process_that_does_not_say_how_to_engrave_is_refused_with_what_to_add(missing: str) -> None:
+    process = replace(ENGRAVING, **{missing: None})
+    with pytest.raises(ProcessError, match="does not say how") as caught:
+        planned_lines(line(ZIGZAG, Operation.ENGRAVE), process=process)
+    assert caught.value.where == f"process {PROCESS.name}"
+    assert "[engrave] with feed_m_min and power" in caught.value.hint
+    assert planned_lines(line(ZIGZAG, Operation.CUT), process=process).blocks
+
+
 def test_the_frame_goes_around_the_box_at_the_feed_with_the_laser_off() -> None:
     corners = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.05], [0.0, 0.05]])
     points = plan_frame(corners, robot=ROBOT, process=PROCESS, placement=PLACE)
@@ -124,8 +192,6 @@ def test_the_frame_goes_around_the_box_at_the_feed_with_the_laser_off() -> None:
 
 
 def test_a_process_without_piercing_has_no_pierce_block() -> None:
-    from dataclasses import replace
-
     points = plan_motion(
         cuts(slot(0.03, 0.01)),
         robot=ROBOT,
