@@ -44,7 +44,7 @@ class Paper:
         """The middle of a free place for a number; taken from now on. None where there is none.
 
         Args:
-            line: of the contour, (K, 2) pixels, y down.
+            line: of the contour, (K, 2) pixels, y down; a closed one ends where it starts.
             width: of the number, pixels.
             height: of the number, pixels.
             inside: whether the inside of the contour is a better place than its outside.
@@ -64,7 +64,8 @@ def _candidates(line: Array, width: float, height: float, *, inside: bool) -> It
     """The middle of the contour's box and other places in it, and those beside its outermost points."""
     (left, top), (right, bottom) = line.min(axis=0).tolist(), line.max(axis=0).tolist()
     fits = right - left > width and bottom - top > height
-    within = [(left + a * (right - left), top + b * (bottom - top)) for b, a in _INSIDE] if fits else []
+    grid = np.array([left, top]) + _INSIDE * (right - left, bottom - top)
+    within = [(x, y) for x, y in grid[_is_inside(grid, line)].tolist()] if fits else []
     across, along = 0.5 * width + _GAP, 0.5 * height + _GAP
     beside = [
         (float(line[line[:, 1].argmin(), 0]), top - along),
@@ -75,5 +76,15 @@ def _candidates(line: Array, width: float, height: float, *, inside: bool) -> It
     yield from (*within, *beside) if inside else (*beside, *within)
 
 
+def _is_inside(points: Array, line: Array) -> BoolArray:
+    """Whether points (K, 2) lie in the polygon of a line that ends where it starts: a ray to the right leaves it."""
+    (x, y), (u, v) = line[:-1].T, line[1:].T
+    above = (y > points[:, 1:]) != (v > points[:, 1:])
+    share = np.divide(points[:, 1:] - y, v - y, out=np.zeros(above.shape), where=above)
+    crossed = above & (points[:, :1] < x + share * (u - x))
+    return np.asarray(np.count_nonzero(crossed, axis=1) % 2 == 1)
+
+
 _SHARES: Final = (0.5, 0.3, 0.7, 0.15, 0.85)
-_INSIDE: Final = [(b, a) for b in _SHARES for a in _SHARES]
+_INSIDE: Final = np.array([(across, down) for down in _SHARES for across in _SHARES])
+"""Places in a box, as shares of its width and height, the middle first."""

@@ -38,7 +38,7 @@ class MarkStyle:
 
 LINES: Final = (
     LineStyle("outer", "outer", "#1f2328", "#f0f6fc", width=1.8),
-    LineStyle("hole", "hole", "#0072b2", "#56b4e9", dash="9 2"),
+    LineStyle("hole", "hole", "#0072b2", "#56b4e9", dash="6 2"),
     LineStyle("line", "open, cut on the line", "#d55e00", "#ff9d5c", dash="8 3 2 3", width=2.0),
     LineStyle("engraved", "engraved", "#00795a", "#2fc79b", dash="2 2.5", width=2.0),
     LineStyle("open", "open, not cut", "#d55e00", "#ff9d5c", dash="5 3", width=2.0),
@@ -46,7 +46,7 @@ LINES: Final = (
 )
 """From the legend's left to its right; the first ones are drawn first."""
 
-REPEATED: Final = LineStyle("repeated", "holds duplicates", "#cc79a7", "#cc79a7", width=7.0)
+REPEATED: Final = LineStyle("repeated", "some of it drawn twice", "#cc79a7", "#cc79a7", width=7.0)
 """A band along the contours that duplicates were merged into."""
 
 MARKS: Final = (

@@ -21,6 +21,14 @@ def test_a_number_goes_inside_or_beside_its_contour() -> None:
     assert beside[1] < 100.0
 
 
+def test_a_number_inside_a_bent_contour_is_on_it() -> None:
+    channel = np.array([[100, 100], [200, 100], [200, 130], [130, 130], [130, 170], [200, 170], [200, 200], [100, 200]])
+    channel = np.vstack([channel, channel[:1]]).astype(float)
+    x, y = paper(channel).place(channel, 12.0, 10.0, inside=True) or (0.0, 0.0)
+    assert 100.0 < x < 200.0
+    assert 100.0 < y < 130.0 or 170.0 < y < 200.0 or x < 130.0
+
+
 def test_a_small_contour_has_its_number_beside_it() -> None:
     small = 130.0 + 0.1 * (SQUARE - 130.0)
     place = paper(small).place(small, 12.0, 10.0, inside=True)

@@ -69,7 +69,7 @@ def test_the_legend_counts_what_is_drawn(drawing: Drawing) -> None:
         "engraved": 2,
         "open, not cut": 1,
         "ignored": 1,
-        "holds duplicates": 1,
+        "some of it drawn twice": 1,
         "gap": 1,
         "branch": 1,
         "crossing": 1,
