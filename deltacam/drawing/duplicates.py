@@ -14,6 +14,8 @@ from deltacam.model import Array, BoolArray, Curve, IntArray
 SAME: Final = 1e-5
 """Curves nowhere more than 0.01 mm apart draw the same line: a beam is wider."""
 
+_WEIGHT: Final = 0.5 * (5.0**0.5 - 1.0)
+
 
 def find(drawn: Pack) -> dict[int, int]:
     """For each curve that repeats an earlier one, the index of that one; an open one never repeats a closed one.
@@ -85,7 +87,9 @@ def _segment_rows(drawn: Pack, which: IntArray) -> Array:
 def _candidates(pack: Pack, lengths: Array, allowed: Array) -> IntArray:
     """Pairs i < j, (K, 2), of curves of a kind with the same bounding box and about the same length."""
     boxes = pack.bounds()
-    pairs = near.pairs(boxes, SAME)
+    # An index over two numbers is several times as fast as over four. With an irrational weight, boxes that differ
+    # hardly ever agree in both, even in a drawing on a grid or with many circles about one centre.
+    pairs = near.pairs(boxes[:, :2] + _WEIGHT * boxes[:, 2:], 1.5 * (1.0 + _WEIGHT) * SAME)
     one, other = pairs.T
     fits = np.abs(boxes[one] - boxes[other]).max(axis=1, initial=0.0) <= allowed[one]
     fits &= pack.closed[one] == pack.closed[other]

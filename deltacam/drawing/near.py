@@ -31,7 +31,7 @@ def clusters(points: Array, distance: float) -> IntArray:
 
     which = distinct(points)
     count = int(which.max()) + 1
-    unique = np.empty((count, points.shape[1]))
+    unique = np.empty((count, 2))
     unique[which] = points
     links = pairs(unique, distance)
     if not len(links):
@@ -54,10 +54,10 @@ def distinct(rows: Array) -> IntArray:
 
 
 def pairs(points: Array, distance: float) -> IntArray:
-    """The pairs i < j of points, (K, 2), whose coordinates differ by no more than ``distance`` together.
+    """The pairs i < j of points, (K, 2), that are no more than ``distance`` apart.
 
     Args:
-        points: (N, 2) m, where the distance is the usual one, or (N, 4) m, boxes whose every side counts for itself.
+        points: (N, 2) m.
         distance: m.
 
     Raises:
@@ -65,11 +65,10 @@ def pairs(points: Array, distance: float) -> IntArray:
     """
     from scipy.spatial import cKDTree
 
-    norm = 2.0 if points.shape[1] == 2 else np.inf
     index = cKDTree(points, balanced_tree=False, compact_nodes=False)
-    if index.count_neighbors(index, distance, p=norm) > MAX_PAIRS + 100 * len(points):
+    if index.count_neighbors(index, distance) > MAX_PAIRS + 100 * len(points):
         raise crowd(points[0])
-    found = index.query_pairs(distance, p=norm, output_type="ndarray")
+    found = index.query_pairs(distance, output_type="ndarray")
     return np.asarray(found[np.lexsort((found[:, 1], found[:, 0]))], dtype=np.int64)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from deltacam.drawing import rings
 from deltacam.drawing.nodes import MOVED
+from deltacam.drawing.outlines import is_mess
 from deltacam.geometry import curve as curves
 from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BoolArray, Curve, IntArray
@@ -49,6 +50,8 @@ def _is_sliver(curve: Curve) -> bool:
     points, _ = curves.flatten(curve, 0.1 * MOVED)
     if len(points) < 3:
         return True
+    if is_mess(Polygon(points)):
+        return False
     return bool(make_valid(Polygon(points)).buffer(-0.5 * MOVED).is_empty)
 
 
