@@ -73,7 +73,7 @@ def placement(raw: Any) -> Placement:
         offsets = places @ own - np.array(tuple(block.block.dxf.base_point)) @ matrix
         if not (np.isfinite(matrix).all() and np.isfinite(offsets).all()):
             raise ValueError("its place, scale or rotation is not a number")
-        if not np.cross(matrix[0], matrix[1]).any():
+        if not scale[0] * scale[1]:
             raise ValueError("its scale makes the block vanish")
     return Placement(name, block, matrix, offsets)
 
