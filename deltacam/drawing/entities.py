@@ -75,9 +75,12 @@ def read(document: Any, metres_per_unit: float) -> Drawn:
         metres_per_unit: the scale from the file's numbers to metres.
 
     Raises:
-        DrawingError: blocks that hold themselves, or more entities or vertices than any drawing needs.
+        DrawingError: blocks that hold themselves, more entities or vertices than any drawing needs, no modelspace.
     """
-    modelspace = document.modelspace()
+    try:
+        modelspace = document.modelspace()
+    except KeyError:
+        raise DrawingError("the file is damaged: it has no modelspace", hint="export the drawing again") from None
     blocks.Census().check(modelspace)
     walk = _Walk(document)
     whole = walk.expand(modelspace, Context(), metres_per_unit * np.eye(3))

@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deltacam.drawing import entities
+from deltacam.errors import DrawingError
 from deltacam.geometry import curve as curves
 from deltacam.model import Curve
 
@@ -181,6 +182,13 @@ def test_an_entity_of_an_unknown_kind_is_listed_with_its_layer(tmp_path: Path) -
     (entity,) = read(ezdxf.readfile(tmp_path / "c.dxf"))
     assert (entity.kind, entity.lost) == ("UNKNOWN", True)
     assert entity.reason == "where a kind of entity is expected the file says '47.9'"
+
+
+def test_a_file_without_a_modelspace_is_refused() -> None:
+    document = ezdxf.new()
+    del document.layouts._layouts["MODEL"]
+    with pytest.raises(DrawingError, match="no modelspace"):
+        read(document)
 
 
 def test_a_name_with_bytes_of_no_encoding_is_printable() -> None:
