@@ -43,10 +43,9 @@ def path_data(curves: Pack, grid: Grid) -> list[str]:
 
 
 def _split(curves: Pack) -> tuple[Array, Array, IntArray]:
-    """The vertices with their bulges and their curves; wide arcs are halved, and open curves end with a nan bulge."""
+    """The vertices with their bulges and their curves; wide arcs are halved."""
     points, bulges = np.asarray(curves.points), curves.bulges.copy()
     curve = np.repeat(np.arange(len(curves)), curves.counts)
-    bulges[(curves.first[1:] - 1)[~curves.closed]] = np.nan
     while np.any(wide := np.abs(bulges) > _WIDEST):
         after = points[_next(curve)]
         step = after[wide] - points[wide]
@@ -73,8 +72,6 @@ def _coarse(places: IntArray, bulges: Array, curve: IntArray) -> tuple[IntArray,
     """Without the vertices that lie in the same grain as the one before, and with flat arcs as lines."""
     first = np.diff(curve, prepend=-1) != 0
     kept = first | np.any(np.diff(places, axis=0, prepend=0) != 0, axis=1)
-    ends = np.isnan(bulges)
-    kept |= ends
     places, bulges, curve = places[kept], bulges[kept], curve[kept]
     chord = np.hypot(*(places[_next(curve)] - places).T)
     return places, np.where(0.5 * np.abs(bulges) * chord < 0.5, 0.0, bulges), curve
@@ -92,7 +89,7 @@ def _written(places: IntArray, bulges: Array, curve: IntArray, closed: BoolArray
     starts = places[first].tolist()
     data = []
     for (x, y), low, high, around in zip(starts, first.tolist(), last.tolist(), closed.tolist(), strict=True):
-        # The way back to the start is drawn by z, unless it is an arc.
+        # An open curve ends at its last vertex. The way back to the start is drawn by z, unless it is an arc.
         stop = high + 1 if around and rows[high][1] != 0.0 else high
         data.append(f"M{x} {y}{_segments(rows[low:stop])}{'z' if around else ''}")
     return data

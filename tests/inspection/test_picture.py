@@ -121,6 +121,26 @@ def test_numbers_are_those_of_the_contours(drawing: Drawing) -> None:
     assert sorted(int(text.text or 0) for text in texts) == list(range(1, 10))
 
 
+def test_a_number_stands_in_its_contour_unless_others_are_in_there(drawing: Drawing) -> None:
+    content = to_svg(drawing)
+    boxes = {2: ((0.016, 0.024), (0.024, 0.016)), 4: ((0.06, 0.035), (0.1, 0.025))}
+    texts = {int(text.text or 0): text for text in group(content, "numbers").findall(f"{SVG}text")}
+    for number, inside in ((2, False), (4, True)):
+        low, high = (pixels(content, corner, drawing) for corner in boxes[number])
+        place = np.array([float(texts[number].get(axis, "nan")) for axis in "xy"])
+        assert bool(np.all((low < place) & (place < high))) == inside
+
+
+def test_holes_are_drawn_on_their_material_whatever_the_numbers() -> None:
+    hole = Contour(1, curves.circle(np.zeros(2), 0.01), "0", ("1",), depth=1, parent=2)
+    outline = Contour(2, curves.circle(np.zeros(2), 0.02), "0", ("2",))
+    frame = Contour(3, curves.circle(np.zeros(2), 0.03), "0", ("3",), operation=Operation.IGNORE)
+    sheet = Drawing(
+        "a.dxf", "", 1.0, "m", "header", (hole, outline), (), ignored=(frame,), extents=(-0.03, -0.03, 0.03, 0.03)
+    )
+    assert [path.get("class") for path in paths(to_svg(sheet), "curves")] == ["outer", "hole", "ignored"]
+
+
 def test_titles_name_number_kind_layer_operation_and_size(drawing: Drawing) -> None:
     titles = {path.findtext(f"{SVG}title") for path in paths(to_svg(drawing), "curves")}
     assert "contour 2: hole in 1, layer CUT, cut, 20.00 x 20.00 mm" in titles

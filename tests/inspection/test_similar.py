@@ -7,6 +7,7 @@ from deltacam.inspection.similar import pattern, summary
 
 def test_numbers_become_their_range() -> None:
     assert summary(["gap of 0.3 mm", "gap of 0.02 mm", "gap of 10 mm"]) == "gap of 0.02 to 10 mm"
+    assert summary(["9 lines", "10 lines"]) == "9 to 10 lines"
 
 
 def test_of_places_and_handles_the_first_is_named() -> None:
