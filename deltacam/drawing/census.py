@@ -21,7 +21,7 @@ STRUCTURE: Final = frozenset(("SECTION", "ENDSEC", "EOF", "TABLE", "ENDTAB", "BL
 TABLES: Final = frozenset(
     ("APPID", "BLOCK_RECORD", "DIMSTYLE", "LAYER", "LTYPE", "STYLE", "UCS", "VIEW", "VPORT", "DICTIONARY")
 )
-_ELSEWHERE: Final = frozenset(("HEADER", "CLASSES", "TABLES", "OBJECTS", "ACDSDATA", "THUMBNAILIMAGE"))
+ELSEWHERE: Final = frozenset(("HEADER", "CLASSES", "TABLES", "OBJECTS", "ACDSDATA", "THUMBNAILIMAGE"))
 """Sections without entities."""
 
 _REARRANGED: Final = frozenset(("MTEXT", "VIEWPORT"))
@@ -107,8 +107,16 @@ def entities(groups: Groups) -> Iterator[int]:
             section = groups.group(i).first(2).decode("ascii", "replace").upper()
         elif kind in ("ENDSEC", "EOF"):
             section = ""
-        elif kind in DRAWN or not (section in _ELSEWHERE or kind in STRUCTURE or kind in TABLES):
+        elif is_entity(kind, section):
             yield i
+
+
+def is_entity(kind: str, section: str) -> bool:
+    """Whether what stands there is an entity or takes the place of one."""
+    if kind in DRAWN:
+        return True
+    inside = section in ("ENTITIES", "BLOCKS")
+    return not (section in ELSEWHERE or kind in STRUCTURE or (kind in TABLES and not inside))
 
 
 def is_complete(document: Any, groups: Groups) -> bool:
@@ -132,7 +140,7 @@ def is_complete(document: Any, groups: Groups) -> bool:
         for entity, is_part in _with_parts(block):
             kind = entity.dxftype()
             held[kind] += 1
-            if not _has_all(entity, kind) or (kind == "VERTEX" and not is_part):
+            if kind in TABLES or not _has_all(entity, kind) or (kind == "VERTEX" and not is_part):
                 return False
     return all(held[kind] >= count for kind, count in expected.items() if kind not in _REARRANGED)
 

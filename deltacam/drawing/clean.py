@@ -244,13 +244,11 @@ def _points(many: dict[int, list[bytes]], code: int) -> str:
 
 def _as_it_is(group: Group) -> str:
     """The rest of an entity that draws nothing: text and numbers that ezdxf can take, else only its kind."""
-    markers = [value for code, value in group.tags if code == 100]
-    if not (group.whole and len(markers) > 1):
-        return "".join(f"100\n{_marker(group.kind)}\n" for _ in range(2))
     own = _own(group.tags)
-    first = next(i for i, (code, value) in enumerate(own) if code == 100 and value != b"AcDbEntity")
-    rest = own[first:]
-    return "".join(f"{code}\n{text(value)}\n" for code, value in rest)
+    first = next((i for i, (code, value) in enumerate(own) if code == 100 and value != b"AcDbEntity"), None)
+    if first is None or not group.whole:
+        return "".join(f"100\n{_marker(group.kind)}\n" for _ in range(2))
+    return "".join(f"{code}\n{text(value)}\n" for code, value in own[first:])
 
 
 def _marker(kind: str) -> str:

@@ -34,14 +34,14 @@ MAX_BYTES: Final = 256 * 2**20
 MAX_GROUPS: Final = 3_000_000
 """Files with more entities, layers, vertices and so on are refused before ezdxf makes an object of each."""
 
-_GROUP_BYTES: Final = 1000
-"""What an object of ezdxf takes in memory, about."""
+_GROUP_BYTES, _LINES_OF_GROUP, _LINE_BYTES = 1000, 10, 150
+"""What an object of ezdxf takes in memory, about; with so many lines of the file, and then for each further line."""
 
 _MEMORY_FACTOR, _MEMORY_FIXED = 30, 512 * 2**20
 """Files that would need more bytes than this times their size, and this, are refused."""
 
-_MAX_RECOVERED: Final = 100_000
-"""Damaged files with more groups go to the tolerant reader at once: ezdxf's recovery can take quadratic time."""
+_MAX_RECOVERED: Final = 400_000
+"""Damaged files with more lines go to the tolerant reader at once: ezdxf's recovery is slow, partly quadratic."""
 
 _REORDERED: Final = frozenset(("LINE",))
 """Kinds whose coordinates ezdxf's recovery puts in order."""
@@ -169,8 +169,10 @@ def _refuse_absurd(groups: Groups, size: int, file: str) -> None:
     if count > MAX_GROUPS:
         what = f"the file is too large: {count} entities and other objects are more than {MAX_GROUPS}"
         raise DrawingError(what, where=file, hint="save only what is to be cut")
-    if count * _GROUP_BYTES > _MEMORY_FACTOR * size + _MEMORY_FIXED:
-        what = f"this is no drawing: it lists {count} objects in {size / 2**20:.3g} MB, nearly all without content"
+    further = max(len(groups.starts) - _LINES_OF_GROUP * count, 0)
+    if count * _GROUP_BYTES + further * _LINE_BYTES > _MEMORY_FACTOR * size + _MEMORY_FIXED:
+        lines = len(groups.starts)
+        what = f"this is no drawing: {count} objects in {lines} lines in {size / 2**20:.3g} MB, nearly without content"
         raise DrawingError(what, where=file, hint=_EXPORT_AGAIN)
 
 
@@ -182,7 +184,7 @@ def _read_plain(data: bytes) -> Document:
 
 def _recover(groups: Groups, reason: object) -> Loaded | None:
     """What ``ezdxf.recover`` makes of a file, if that is all of it and unchanged."""
-    if len(groups) > _MAX_RECOVERED or not census.is_ordered(groups, _REORDERED):
+    if len(groups.starts) > _MAX_RECOVERED or not census.is_ordered(groups, _REORDERED):
         return None
     try:
         document, auditor = recover.read(io.BytesIO(groups.text))

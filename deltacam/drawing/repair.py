@@ -11,13 +11,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from deltacam.drawing import clean
-from deltacam.drawing.census import DRAWN, STRUCTURE, TABLES, flaw
+from deltacam.drawing.census import DRAWN, ELSEWHERE, TABLES, flaw, is_entity
 from deltacam.drawing.clean import DamagedError
 from deltacam.drawing.tags import Group, Groups
 from deltacam.errors import DrawingError
 from deltacam.model import LedgerEntry, Outcome
 
-_ELSEWHERE: Final = ("HEADER", "CLASSES", "TABLES", "OBJECTS", "ACDSDATA", "THUMBNAILIMAGE")
 _CHILDREN: Final = {"POLYLINE": "VERTEX", "INSERT": "ATTRIB"}
 _MARKED: Final = ("LWPOLYLINE", "SPLINE", "ELLIPSE")
 """Kinds that are never written without subclass markers by the book."""
@@ -125,9 +124,9 @@ class _Walk:
             self._close_block()
         elif kind == "LAYER" and self.section not in ("ENTITIES", "BLOCKS"):
             self._layer(group)
-        elif kind in DRAWN or not (self.section in _ELSEWHERE or kind in STRUCTURE or kind in TABLES):
+        elif is_entity(kind, self.section):
             self.ended = False
-            self.started = self.started and self.section not in _ELSEWHERE
+            self.started = self.started and self.section not in ELSEWHERE
             self._entity(group, is_last=index + 1 == len(self.groups))
 
     def finish(self) -> Repaired:
@@ -238,6 +237,8 @@ class _Walk:
             raise DamagedError(self.block.problem)
         if not group.kind.replace("_", "").isalnum() or not group.kind.isascii():
             raise DamagedError("it has no kind")
+        if group.kind in TABLES:
+            raise DamagedError(f"{group.kind} is no kind of entity")
         if group.kind not in DRAWN:
             return [clean.write_bare(group, self.handles) if self.bare else clean.write(group, self.handles)]
         if group.kind in _MARKED and not group.first(100):

@@ -92,6 +92,7 @@ def test_a_polyline_without_subclass_markers_is_read_exactly() -> None:
         (entities(LINE) + "\n\n\x1a", ["LINE"]),
         (entities(LWPOLYLINE, SPLINE), ["LWPOLYLINE", "SPLINE"]),
         (entities("0\nHATCH\n8\n0\n", LINE), ["HATCH", "LINE"]),
+        (entities("0\nTEXT\n8\n0\n100\nAcDbEntity\n102\n{\n100\nAcDbText\n", LWPOLYLINE), ["TEXT", "LWPOLYLINE"]),
         (entities("0\nTEXT\n8\n0\n10\n0\n20\n0\n1\ntwo\nlines\n", LINE), ["TEXT", "LINE"]),
         (entities("0\nTEXT\n8\n0\n10\n0\n20\n0\n1\ntwo\n\n", LINE), ["TEXT", "LINE"]),
         (entities(POLYLINE, VERTEX, VERTEX, LINE), ["POLYLINE", "LINE"]),
@@ -124,6 +125,7 @@ def test_a_sloppy_file_is_read_whole_and_a_repair_is_mentioned(text: str, found:
         (entities(CIRCLE, LWPOLYLINE.replace("20\n0\n", "", 1)), ["CIRCLE"], "LWPOLYLINE", "2 x but 1 y"),
         (entities(CIRCLE, SPLINE.replace("71\n1\n", "")), ["CIRCLE"], "SPLINE", "no degree"),
         (entities(CIRCLE, POLYLINE, VERTEX, VERTEX.replace("20\n2\n", ""), SEQEND), ["CIRCLE"], "POLYLINE", "vertex"),
+        (entities(CIRCLE, LINE.replace("LINE", "LAYER")), ["CIRCLE"], "LAYER", "no kind of entity"),
         (entities(CIRCLE, VERTEX), ["CIRCLE"], "VERTEX", "without its polyline"),
         (entities(INSERT.replace("2\nX\n", ""), LINE), ["LINE"], "INSERT", "group code 2"),
         (blocks(*(BLOCK, CIRCLE, "0\nENDBLK\n") * 2) + entities(INSERT), ["INSERT"], "CIRCLE", "in the file twice"),
@@ -243,7 +245,7 @@ def test_a_binary_file_that_is_incomplete_goes_to_the_tolerant_reader() -> None:
 @pytest.mark.parametrize(
     ("data", "what"),
     [
-        (b"0\nSECTION\n" + b"0\nA\n" * 900_000, "lists 900001 objects"),
+        (b"0\nSECTION\n" + b"0\nA\n" * 900_000, "900001 objects in 1800002 lines"),
         (b"0\nLINE\n" * 3_000_001, "more than 3000000"),
         (b"0\n" * 3_000_001, "not a DXF"),
         (b"A" * 10_000_000, "not a DXF"),
