@@ -152,3 +152,14 @@ def test_names_from_a_stranger_are_shown_but_do_nothing(tmp_path: Path) -> None:
     assert "<script" not in picture
     assert not {"\x1b", "\u202e"} & set(picture)
     ElementTree.fromstring(picture)  # noqa: S314 - our own text
+
+
+def test_the_users_own_defaults_count(tmp_path: Path) -> None:
+    (tmp_path / "deltacam.toml").write_text('units = "in"\njoining_mm = 0.2\n')
+    found = listed(tmp_path, DXF / "broken-loop.dxf")
+    assert (found["unit"], found["unit_source"]) == ("in", "deltacam.toml")
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = 4
+    document.modelspace().add_lwpolyline([(0, 0.15), (0, 10), (10, 10), (10, 0), (0, 0)])
+    document.saveas(tmp_path / "a.dxf")
+    assert listed(tmp_path, "a.dxf")["contours"]["closed"] == 1
