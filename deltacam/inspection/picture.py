@@ -68,7 +68,7 @@ def to_svg(drawing: Drawing) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" class="di" viewBox="0 0 {_WIDTH:.0f} {height:.0f}" role="img">'
         f"<title>{_shown(drawing.file)}</title><desc>{view.accuracy}</desc>"
         f'<style>{style.sheet()}</style><rect width="100%" height="100%" rx="10" fill="var(--paper)"/>'
-        f"{_header(drawing)}{''.join(parts)}{footer}</svg>\n"
+        f"{_header(drawing, measured, view)}{''.join(parts)}{footer}</svg>\n"
     )
 
 
@@ -199,16 +199,19 @@ def _numbers(drawing: Drawing, measured: Measured, styles: Sequence[LineStyle], 
     return f'<g class="numbers">{"".join(parts)}</g>'
 
 
-def _header(drawing: Drawing) -> str:
-    """The file, its unit and its size."""
+def _header(drawing: Drawing, measured: Measured, view: _View) -> str:
+    """The file, its unit and its size, and what the picture leaves out."""
     unit = f"unit {drawing.unit_in_words}" if drawing.unit else "no unit stated: sizes as if it were mm"
     size = "nothing is drawn"
     if drawing.extents:
         left, lower, right, upper = drawing.extents
         size = f"{to_mm(right - left):.2f} \u00d7 {to_mm(upper - lower):.2f} mm"
+    many = len(measured.contours) > MOST_TITLES
+    less = "" if view.grid.fine else f"; {view.accuracy}"
+    less += f"; no numbers with more than {MOST_TITLES} contours" if many else ""
     return (
         f'<text class="name" x="{_MARGIN}" y="28">{_shown(drawing.file, longest=90)}</text>'
-        f'<text x="{_MARGIN}" y="48">{_shown(unit)}, {size}</text>'
+        f'<text x="{_MARGIN}" y="48">{_shown(unit)}, {size}{less}</text>'
     )
 
 

@@ -209,6 +209,7 @@ def test_many_contours_are_one_path_without_titles_and_numbers() -> None:
     assert len(paths(few, "curves")) == picture.MOST_TITLES
     assert [path.get("d", "").count("M") for path in paths(more, "curves")] == [picture.MOST_TITLES + 1]
     assert 'class="numbers"' not in more
+    assert ("no numbers" in more, "no numbers" in few) == (True, False)
 
 
 def test_the_picture_of_very_many_segments_stays_small(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -216,7 +217,8 @@ def test_the_picture_of_very_many_segments_stays_small(monkeypatch: pytest.Monke
     whole = to_svg(crowd)
     monkeypatch.setattr(picture, "MOST_SEGMENTS", 1000)
     coarse = to_svg(crowd)
-    assert "is left out" in coarse
+    assert "is left out</desc>" in coarse
+    assert "is left out;" in coarse  # and where people see it
     assert len(coarse) < 0.7 * len(whole)
     assert legend(coarse) == legend(whole) == {"outer": 2000}
 
