@@ -91,7 +91,9 @@ def elevated(tool: BSpline) -> BSpline:
         raised += [(start + 2 * middle) / 3, (2 * middle + end) / 3, end]
     knots = np.unique(tool.knots())
     found = np.array(raised)
-    return BSpline(found[:, :3] / found[:, 3:], 4, [knots[0], *np.repeat(knots, 3), knots[-1]], weights=found[:, 3].tolist())
+    return BSpline(
+        found[:, :3] / found[:, 3:], 4, [knots[0], *np.repeat(knots, 3), knots[-1]], weights=found[:, 3].tolist()
+    )
 
 
 POINTS = [(0.0, 0.0), (4.0, 9.0), (9.0, -3.0), (14.0, 4.0), (15.0, 5.0), (20.0, 3.0)]
