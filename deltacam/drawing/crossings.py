@@ -28,6 +28,9 @@ MOST_MEETINGS: Final = 20_000
 MOST_POINTS: Final = 1_000_000
 """Nor are more pairs than have so many points together."""
 
+MOST_MEASURED: Final = 2_000_000
+"""Nor is the distance of more pairs of short pieces measured."""
+
 _EXAMINED: Final = 1000
 _HINT: Final = "separate the outlines in the drawing, or put what is not to be cut on its own layer and leave it out"
 _SELF_HINT: Final = "draw each outline as a line that does not meet itself"
@@ -108,14 +111,17 @@ def _self_crossing(contour: Contour, ring: Any) -> Finding | None:
 
 def _meeting_pieces(pieces: Pieces) -> tuple[IntArray, bool]:
     """Pairs of pieces of different rings that meet, (K, 2), and whether those are all."""
-    found, met = [np.zeros((0, 2), dtype=np.int64)], 0
-    for pairs in pieces.meetings(SAGITTA):
+    found, met, measured = [np.zeros((0, 2), dtype=np.int64)], 0, 0
+    complete = True
+    for pairs, count in pieces.meetings(SAGITTA):
         found.append(pairs)
         met += len(np.unique(pieces.ring_of[pairs], axis=0))
-        if met > MOST_MEETINGS:
+        measured += count
+        complete = met <= MOST_MEETINGS and measured <= MOST_MEASURED
+        if not complete:
             break
     pairs = np.concatenate(found)
-    return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))], met <= MOST_MEETINGS
+    return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))], complete
 
 
 def _cross(one: Any, other: Any) -> BoolArray:

@@ -64,8 +64,11 @@ class Pieces:
         vertex[first + counts - 1] = self.end[which]
         return shapely.linestrings(self.points[vertex], indices=np.repeat(np.arange(len(which)), counts))
 
-    def meetings(self, distance: float) -> Iterator[IntArray]:
-        """Pairs of pieces of different rings, (K, 2), no more than ``distance`` m apart, the lower ring first."""
+    def meetings(self, distance: float) -> Iterator[tuple[IntArray, int]]:
+        """Pairs of pieces of different rings, (K, 2), no more than ``distance`` m apart, the lower ring first.
+
+        They come in batches, with the number of pairs that had to be measured for each.
+        """
         import shapely
 
         start, end = self.ends(np.arange(len(self.begin)))
@@ -81,7 +84,7 @@ class Pieces:
             close = ~(self._apart(one, other, distance) | self._apart(other, one, distance))
             one, other = one[close], other[close]
             met = shapely.dwithin(self.lines(one), self.lines(other), distance)
-            yield np.column_stack([one[met], other[met]])
+            yield np.column_stack([one[met], other[met]]), len(one)
 
     def _apart(self, one: IntArray, other: IntArray, distance: float) -> BoolArray:
         """Whether the second of each pair of pieces lies wholly on one side of the first, at more than a distance."""

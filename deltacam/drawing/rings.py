@@ -11,6 +11,9 @@ from deltacam.model import Array, BoolArray, IntArray
 
 _BATCH: Final = 4096
 
+_MOST: Final = 10_000
+"""Pieces of an arc; only circles with a radius of more than 20 m would need more for a micrometre."""
+
 
 def signed_areas(pack: Pack) -> Array:
     """The area that each curve encloses, closed by a straight line where it is open, (M,) m2; see ``curve``.
@@ -75,7 +78,7 @@ def _flattened(pack: Pack, sagitta: float) -> tuple[Array, IntArray]:
     radius = 0.5 * np.divide(chord, np.sin(half), out=np.zeros_like(chord), where=half > 0.0)
     rise = np.divide(sagitta, radius, out=np.full_like(radius, 2.0), where=radius > 0.0)
     piece = np.minimum(2.0 * np.arccos(np.clip(1.0 - rise, -1.0, 1.0)), 0.5 * np.pi)
-    pieces = np.maximum(np.ceil(2.0 * half / np.maximum(piece, 1e-9)), 1.0).astype(np.int64)
+    pieces = np.clip(np.ceil(2.0 * half / np.maximum(piece, 1e-9)), 1.0, _MOST).astype(np.int64)
     vertex = np.repeat(np.arange(len(chord)), pieces)
     index = np.arange(len(vertex)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     curve = np.repeat(np.repeat(np.arange(len(pack)), pack.counts), pieces)
@@ -103,12 +106,14 @@ def both(one: Pack, other: Pack) -> Pack:
 
 
 def full(points: Array, curve: IntArray) -> tuple[Array, IntArray]:
-    """The points and curves of ``flatten`` of closed curves, with as many points as a ring needs: three or more.
+    """The points and curves of ``flatten`` of closed curves, with as many points as a ring needs.
 
     Returns:
-        the points, (N, 2) m, and the curve of each, (N,); a curve of two points has its second one twice.
+        the points, (N, 2) m, and the curve of each, (N,); a curve that is too short has its last point several times.
     """
     counts = np.bincount(curve)
-    short = np.flatnonzero(counts == 2)
-    last = np.cumsum(counts)[short] - 1
-    return np.insert(points, last, points[last], axis=0), np.insert(curve, last, curve[last])
+    last = np.cumsum(counts) - 1
+    shut = (points[last] == points[last - counts + 1]).all(axis=1)
+    short = np.flatnonzero((counts < 3) | ((counts == 3) & shut))
+    at = np.repeat(last[short], 4 - counts[short])
+    return np.insert(points, at, points[at], axis=0), np.insert(curve, at, curve[at])
