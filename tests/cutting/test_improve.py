@@ -7,12 +7,10 @@ from deltacam.cutting.improve import Precedence, Tour, improve
 from deltacam.geometry import curve as curves
 from deltacam.model import Cut
 
-FREE = Precedence((), (), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
-
 
 def free(count: int) -> Precedence:
-    none = ((),) * count
-    return Precedence(none, none, FREE.inner, FREE.outer)
+    none, nobody = ((),) * count, np.zeros(0, dtype=np.int64)
+    return Precedence(none, none, nobody, nobody)
 
 
 def random_tour(seed: int, count: int) -> Tour:
