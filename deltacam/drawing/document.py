@@ -201,14 +201,17 @@ def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
     for bare in (False, True):
         repaired = repair(groups, file, bare=bare)
         _refuse_empty(repaired, groups, file, reason)
+        text = repaired.text.encode("utf-8", "surrogateescape")
         try:
-            document = filemanagement.read(io.StringIO(repaired.text))
+            # A StringIO would take four bytes for each character.
+            stream = io.TextIOWrapper(io.BytesIO(text), encoding="utf-8", errors="surrogateescape")
+            document = filemanagement.read(stream)
         except Exception as error:
             if bare:
                 raise DrawingError(f"the file is damaged: {_one_line(error)}", where=file, hint=_SAVE_AGAIN) from error
             continue
         break
-    if not census.is_complete(document, tags.split(repaired.text.encode("utf-8", "surrogateescape"))):
+    if not census.is_complete(document, tags.split(text)):
         raise DrawingError(f"the file is damaged: {_one_line(reason)}", where=file, hint=_SAVE_AGAIN)
     how = ", ".join(repaired.repairs) or _one_line(reason)
     return Loaded(document, "tolerant", repaired.lost, (*_lost(repaired), _recovered(how), *_miscounted(groups)))

@@ -116,8 +116,8 @@ def _one_line_end(data: bytes) -> bytes:
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         data = data.decode("utf-16", "replace").encode()
     data = data.removeprefix(b"\xef\xbb\xbf")
-    if b"\r" in data:  # a file whose ends were converted twice has \r\r\n
-        data = data.replace(b"\r\r\n", b"\n").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     return data.rstrip(b"\x1a\0 \t\n") + b"\n"
 
 
@@ -143,7 +143,7 @@ def _strip(text: bytes, starts: _Lines, ends: _Lines) -> tuple[_Lines, _Lines]:
 
 
 def _without_gaps(starts: _Lines, ends: _Lines) -> tuple[_Lines, _Lines]:
-    """The lines themselves, or where every second one is blank those between."""
+    """The lines themselves, or where every second one is blank, as after two conversions of their ends, the others."""
     if len(starts) > 2 and (starts[1::2] == ends[1::2]).all():
         return starts[::2].copy(), ends[::2].copy()
     return starts, ends
