@@ -103,10 +103,12 @@ def untangle(strands: Strands, tangled: Iterable[int]) -> Untangled | None:
 
 
 def _segments_of(pack: Pack, which: IntArray) -> tuple[IntArray, IntArray]:
-    """The segments of the curves of ``which``: the curve of each, and the vertex where it begins."""
+    """The segments of the curves of ``which`` that have a length: the curve of each, and the vertex where it begins."""
     counts = pack.counts[which] - 1
     curve = np.repeat(which, counts)
-    return curve, np.repeat(pack.first[which] - (np.cumsum(counts) - counts), counts) + np.arange(counts.sum())
+    vertex = np.repeat(pack.first[which] - (np.cumsum(counts) - counts), counts) + np.arange(counts.sum())
+    long = (pack.points[vertex] != pack.points[vertex + 1]).any(axis=1)
+    return curve[long], vertex[long]
 
 
 def _part(bulges: Array, share: Array) -> Array:

@@ -80,6 +80,14 @@ def test_a_polyline_over_three_of_four_lines_is_a_copy() -> None:
     assert result.notes == {4: (Outcome.MERGED, "duplicate of LINE #1")}
 
 
+def test_a_vertex_that_is_written_twice_changes_nothing() -> None:
+    bracket = line((10, 0), (10, 10), (10, 10), (0, 10), (0, 0))
+    result = joined(bracket, *pieces(SQUARE, []))
+    (loop,) = result.loops
+    assert curves.signed_area(loop.curve) == pytest.approx(1e-4)
+    assert result.chains == []
+
+
 def test_arcs_cut_at_other_places_are_found_once() -> None:
     shape = slot(30 * MM, 10 * MM)
     whole = pieces(shape, [])
