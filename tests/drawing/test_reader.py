@@ -1,5 +1,6 @@
 """Files, units, the ledger and the refusals."""
 
+import gc
 import hashlib
 import os
 import subprocess
@@ -393,3 +394,15 @@ def test_an_open_chain_that_the_process_wants_two_things_of_is_refused(reread: A
     rules = (Rule(Operation.CUT, layer="A", open=Operation.CUT), Rule(Operation.CUT, layer="B"))
     with pytest.raises(DrawingError, match="different things: cut and ignore"):
         reread(draw, selection=Selection(rules=rules))
+
+
+@pytest.mark.parametrize("was_on", [True, False])
+def test_the_collector_of_garbage_is_left_as_it_was(reread: Any, was_on: bool) -> None:
+    (gc.enable if was_on else gc.disable)()
+    try:
+        reread(square)
+        with pytest.raises(DrawingError):
+            reread(an_insert_of_nothing)
+        assert gc.isenabled() == was_on
+    finally:
+        gc.enable()
