@@ -27,6 +27,8 @@ from deltacam.model import BoolArray, Contour, Curve, Finding, IntArray
 _BATCH: Final = 256
 
 
+# GEOS may leave a floating point flag behind where faces vanish; what it returns is sound.
+@np.errstate(invalid="ignore")
 def nest(
     contours: Sequence[Contour], *, outlines: Sequence[Curve] = (), tangles: Sequence[Curve] = ()
 ) -> tuple[tuple[Contour, ...], list[Finding]]:

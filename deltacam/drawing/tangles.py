@@ -20,6 +20,8 @@ _COMMON_HINT = "draw each part's outline for itself and leave room for the cut b
 _SPLIT_HINT = "draw each outline for itself, so that it closes in one way only"
 
 
+# GEOS may leave a floating point flag behind where lines cross; what it returns is sound.
+@np.errstate(invalid="ignore")
 def find(strands: Strands, nodes: Nodes, tangled: list[Steps], name: Name) -> list[Finding]:
     """One finding per group of chains between branch points that encloses something; nothing may be planned then.
 

@@ -43,6 +43,8 @@ def halved(curve: Curve) -> Curve:
     return Curve(points=curve.points[start : end + 1], bulges=curve.bulges[start:end], closed=False)
 
 
+# GEOS may leave a floating point flag behind where faces vanish; what it returns is sound.
+@np.errstate(invalid="ignore")
 def _is_sliver(curve: Curve) -> bool:
     """Whether a closed curve without much area to one side encloses nothing; a figure of eight does."""
     from shapely import Polygon, make_valid

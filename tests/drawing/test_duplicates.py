@@ -34,6 +34,12 @@ def test_the_two_halves_of_a_circle_and_the_diagonals_of_a_box_are_no_copies() -
     assert find(segment((0, 0), (10, 10)), segment((10, 0), (0, 10))) == {}
 
 
+def test_an_arc_and_its_mirror_image_between_the_same_ends_are_no_copies() -> None:
+    # Both fill the same box; only their middles differ.
+    lens = segment((0, 0), (10, 10), 0.2), segment((0, 0), (10, 10), -0.2)
+    assert find(*lens) == {}
+
+
 def test_copies_of_copies_name_the_first() -> None:
     line = segment((0, 0), (10, 0))
     assert find(*[line] * 5) == {1: 0, 2: 0, 3: 0, 4: 0}

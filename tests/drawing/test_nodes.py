@@ -84,6 +84,12 @@ def test_ends_that_coincide_leave_other_ends_alone() -> None:
     assert len(result.chains) == 1
 
 
+def test_an_end_near_to_ends_that_have_met_is_joined_to_none() -> None:
+    one, other = line((0, 0), (-10, 0), (-10, -10)), line((0, 0), (0, 10), (-20, 10))
+    result = joined(one, other, line((0.4, 0), (30, 0)), joining=1e-3)
+    assert [set(chain.members) for chain in result.chains] == [{0, 1}, {2}]
+
+
 def test_ends_of_two_chains_that_nearly_meet_are_a_gap_with_its_place() -> None:
     def gaps(distance: float) -> list[tuple[float, float] | None]:
         one, other = line((0, 0), (10, 0), (20, 5)), line((20, 5 + distance), (20, 20), (0, 20))

@@ -129,6 +129,23 @@ def test_an_open_line_on_an_edge_is_named() -> None:
     assert (finding.kind, finding.where, finding.place) == ("duplicate", "LINE #4", (0.002, 0.0))
 
 
+def test_a_whole_line_is_split_where_another_outline_needs_its_middle() -> None:
+    # The long edge is drawn twice, the second time in two; a second triangle stands on its right half only.
+    long, halves = line((0, 0), (20, 0)), [line((0, 0), (10, 0)), line((10, 0), (20, 0))]
+    below = line((20, 0), (10, -9), (0, 0))
+    above = line((20, 0), (15, 9), (10, 0))
+    result = joined(long, *halves, below, above)
+    assert result.loops == []
+    (finding,) = (finding for finding in result.findings if finding.blocks)
+    assert finding.what.startswith("2 outlines share lines")
+
+
+def test_an_open_line_that_leaves_the_edge_lies_on_nothing() -> None:
+    leaving = line((2, 0), (5, 0), (5, 5))
+    result = joined(*pieces(SQUARE, []), leaving)
+    assert result.chains[0].reason == "an open line, from (2.000, 0.000) to (5.000, 5.000) mm"
+
+
 @settings(deadline=None, max_examples=40)
 @given(
     star_curves(),
