@@ -84,6 +84,7 @@ def _read(
         *remarks.not_cut(found),
         *remarks.paper_space(paper),
         *remarks.drawing_sheet(found.entities, joined.contours),
+        *remarks.doubles([contour for contour in joined.contours if contour.has_kerf]),
     ]
     if strict:
         _refuse(findings, path.name)

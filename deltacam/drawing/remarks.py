@@ -6,8 +6,11 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+import numpy as np
+
 from deltacam.drawing.entities import Drawn, Entity
 from deltacam.geometry import curve as curves
+from deltacam.geometry.pack import Pack
 from deltacam.model import Contour, Finding, Layer
 from deltacam.units import to_mm
 
@@ -32,6 +35,11 @@ _PAGES_MM: Final = {
 """Sizes of paper (ISO 216, ANSI/ASME Y14.1), mm."""
 
 _PAGE_TOLERANCE_MM: Final = 1.0
+
+_DOUBLE: Final = 0.3e-3
+"""Contours nearer than this to the one around them, m, look like the edges of a thick line."""
+
+_MOST_DOUBLES: Final = 200
 
 
 def hidden_layers(layers: Iterable[Layer]) -> list[Finding]:
@@ -100,6 +108,38 @@ def drawing_sheet(entities: Sequence[Entity], contours: Sequence[Contour]) -> li
             what = f"it has the size of a page ({page}) and lies around other contours: is it a frame?"
             findings.append(Finding(what, where=contour.where, hint=hint, kind="drawing_sheet"))
     return findings
+
+
+def doubles(contours: Sequence[Contour]) -> list[Finding]:
+    """Findings for contours that run just inside their neighbour all around: the two edges of one thick line.
+
+    Args:
+        contours: closed, nested.
+    """
+    place = {contour.number: i for i, contour in enumerate(contours)}
+    pairs = [(i, place[contour.parent]) for i, contour in enumerate(contours) if contour.parent in place]
+    if not pairs:
+        return []
+    inner, outer = np.array(pairs).T
+    pack = Pack.of(contour.curve for contour in contours)
+    boxes, lengths = pack.bounds(), pack.lengths()
+    apart = np.abs(boxes[inner] - boxes[outer])
+    narrow, wide = apart.min(axis=1), apart.max(axis=1)
+    # Beside a curve that goes around once, one at the distance d is 2 pi d shorter, and 8 d beside a rectangle.
+    alike = np.abs(lengths[outer] - lengths[inner]) <= 16.0 * wide
+    close = (narrow > 0.0) & (wide <= np.minimum(_DOUBLE, 3.0 * narrow)) & (wide < 0.05 * lengths[inner]) & alike
+    hint = "draw the line itself, without its width, if that is what is to be cut"
+    return [
+        Finding(
+            f"it runs {to_mm(wide[k]):.3g} mm inside contour {contours[outer[k]].number} all around, "
+            "like the other edge of a thick line",
+            where=contours[inner[k]].where,
+            hint=hint,
+            kind="double",
+            place=(float(contours[inner[k]].curve.points[0, 0]), float(contours[inner[k]].curve.points[0, 1])),
+        )
+        for k in np.flatnonzero(close)[:_MOST_DOUBLES]
+    ]
 
 
 def counted(count: int, one: str, many: str = "", *, verb: bool = True) -> str:

@@ -396,6 +396,20 @@ def test_an_open_chain_that_the_process_wants_two_things_of_is_refused(reread: A
         reread(draw, selection=Selection(rules=rules))
 
 
+def test_the_two_edges_of_a_thick_line_are_noted(reread: Any) -> None:
+    def draw(msp: Any) -> None:
+        msp.add_circle((0, 0), 5)
+        msp.add_circle((0, 0), 4.85)
+        msp.add_circle((20, 0), 5)
+        msp.add_circle((20, 0), 4.5)
+        msp.add_circle((40, 0), 5)
+        msp.add_circle((40.1, 0), 4.85)
+
+    found = [finding for finding in reread(draw).findings if finding.kind == "double"]
+    assert [finding.what.split(",")[0] for finding in found] == ["it runs 0.15 mm inside contour 1 all around"]
+    assert found[0].place == pytest.approx((4.85e-3, 0.0))
+
+
 @pytest.mark.parametrize("was_on", [True, False])
 def test_the_collector_of_garbage_is_left_as_it_was(reread: Any, was_on: bool) -> None:
     (gc.enable if was_on else gc.disable)()
