@@ -11,6 +11,9 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 import numpy as np
+from ezdxf.entities import factory
+from ezdxf.entities.dxfentity import DXFTagStorage
+from ezdxf.entities.dxfgfx import DXFGraphic
 
 from deltacam.drawing.tags import Group, Groups
 
@@ -18,9 +21,6 @@ DRAWN: Final = frozenset(("LINE", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "POL
 """Kinds that draw something which can be cut, or are part of such."""
 
 STRUCTURE: Final = frozenset(("SECTION", "ENDSEC", "EOF", "TABLE", "ENDTAB", "BLOCK", "ENDBLK", "SEQEND", "CLASS"))
-TABLES: Final = frozenset(
-    ("APPID", "BLOCK_RECORD", "DIMSTYLE", "LAYER", "LTYPE", "STYLE", "UCS", "VIEW", "VPORT", "DICTIONARY")
-)
 ELSEWHERE: Final = frozenset(("HEADER", "CLASSES", "TABLES", "OBJECTS", "ACDSDATA", "THUMBNAILIMAGE"))
 """Sections without entities."""
 
@@ -111,12 +111,18 @@ def entities(groups: Groups) -> Iterator[int]:
             yield i
 
 
+def is_object(kind: str) -> bool:
+    """Whether ezdxf knows the kind as that of a table entry or an object without a place in the drawing."""
+    known = factory.ENTITY_CLASSES.get(kind)
+    return known is not None and not issubclass(known, (DXFGraphic, DXFTagStorage))
+
+
 def is_entity(kind: str, section: str) -> bool:
     """Whether what stands there is an entity or takes the place of one."""
     if kind in DRAWN:
         return True
     inside = section in ("ENTITIES", "BLOCKS")
-    return not (section in ELSEWHERE or kind in STRUCTURE or (kind in TABLES and not inside))
+    return not (section in ELSEWHERE or kind in STRUCTURE or (is_object(kind) and not inside))
 
 
 def is_complete(document: Any, groups: Groups) -> bool:
@@ -140,7 +146,7 @@ def is_complete(document: Any, groups: Groups) -> bool:
         for entity, is_part in _with_parts(block):
             kind = entity.dxftype()
             held[kind] += 1
-            if kind in TABLES or not _has_all(entity, kind) or (kind == "VERTEX" and not is_part):
+            if is_object(kind) or not _has_all(entity, kind) or (kind == "VERTEX" and not is_part):
                 return False
     return all(held[kind] >= count for kind, count in expected.items() if kind not in _REARRANGED)
 

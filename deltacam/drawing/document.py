@@ -122,14 +122,14 @@ def load(data: bytes, file: str) -> Loaded:
         return _load_binary(data, file)
     groups = tags.split(data)
     _refuse_absurd(groups, len(data), file)
-    reason: object = _INCOMPLETE
+    reason = _INCOMPLETE
     try:
         document = _read_plain(data.removeprefix(b"\xef\xbb\xbf"))
         if census.is_ordered(groups) and census.is_complete(document, groups):
             return Loaded(document, "plain", findings=_miscounted(groups))
         del document
     except Exception as error:  # noqa: BLE001  # ezdxf raises whatever a damaged file makes it stumble over
-        reason = error
+        reason = _one_line(error)  # the error itself would keep all that was read so far in memory
     return _recover(groups, reason) or _tolerate(tags.split(_in_utf8(data)), file, reason)
 
 
@@ -182,7 +182,7 @@ def _read_plain(data: bytes) -> Document:
     return filemanagement.read(io.TextIOWrapper(io.BytesIO(data), encoding=info.encoding, errors="surrogateescape"))
 
 
-def _recover(groups: Groups, reason: object) -> Loaded | None:
+def _recover(groups: Groups, reason: str) -> Loaded | None:
     """What ``ezdxf.recover`` makes of a file, if that is all of it and unchanged."""
     if len(groups.starts) > _MAX_RECOVERED or not census.is_ordered(groups, _REORDERED):
         return None
@@ -193,10 +193,10 @@ def _recover(groups: Groups, reason: object) -> Loaded | None:
     mended = {int(entry.code) for entry in (*auditor.errors, *auditor.fixes)}
     if not (mended <= _HARMLESS and len(document.modelspace()) and census.is_complete(document, groups)):
         return None
-    return Loaded(document, "recover", findings=(_recovered(_one_line(reason)), *_miscounted(groups)))
+    return Loaded(document, "recover", findings=(_recovered(reason), *_miscounted(groups)))
 
 
-def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
+def _tolerate(groups: Groups, file: str, reason: str) -> Loaded:
     """What our own reader makes of a file."""
     for bare in (False, True):
         repaired = repair(groups, file, bare=bare)
@@ -212,12 +212,12 @@ def _tolerate(groups: Groups, file: str, reason: object) -> Loaded:
             continue
         break
     if not census.is_complete(document, tags.split(text)):
-        raise DrawingError(f"the file is damaged: {_one_line(reason)}", where=file, hint=_SAVE_AGAIN)
-    how = ", ".join(repaired.repairs) or _one_line(reason)
+        raise DrawingError(f"the file is damaged: {reason}", where=file, hint=_SAVE_AGAIN)
+    how = ", ".join(repaired.repairs) or reason
     return Loaded(document, "tolerant", repaired.lost, (*_lost(repaired), _recovered(how), *_miscounted(groups)))
 
 
-def _refuse_empty(repaired: Repaired, groups: Groups, file: str, reason: object) -> None:
+def _refuse_empty(repaired: Repaired, groups: Groups, file: str, reason: str) -> None:
     """Raises where nothing that can be cut is left of a damaged file."""
     if census.DRAWN.intersection(kind for kind, count in repaired.kept.items() if count):
         return
@@ -225,7 +225,7 @@ def _refuse_empty(repaired: Repaired, groups: Groups, file: str, reason: object)
         raise DrawingError(
             "the file is cut off before the end of its entities: none is left", where=file, hint=_EXPORT_AGAIN
         )
-    what = f"the file is damaged: {_one_line(reason)}"
+    what = f"the file is damaged: {reason}"
     if repaired.lost:
         what = f"the file is damaged: none of its {len(repaired.lost)} entities can be read: {repaired.lost[0].reason}"
     raise DrawingError(what, where=file, hint=_SAVE_AGAIN)

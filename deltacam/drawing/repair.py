@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from deltacam.drawing import clean
-from deltacam.drawing.census import DRAWN, ELSEWHERE, TABLES, flaw, is_entity
+from deltacam.drawing.census import DRAWN, ELSEWHERE, flaw, is_entity, is_object
 from deltacam.drawing.clean import DamagedError
 from deltacam.drawing.tags import Group, Groups
 from deltacam.errors import DrawingError
@@ -237,7 +237,7 @@ class _Walk:
             raise DamagedError(self.block.problem)
         if not group.kind.replace("_", "").isalnum() or not group.kind.isascii():
             raise DamagedError("it has no kind")
-        if group.kind in TABLES:
+        if is_object(group.kind):
             raise DamagedError(f"{group.kind} is no kind of entity")
         if group.kind not in DRAWN:
             return [clean.write_bare(group, self.handles) if self.bare else clean.write(group, self.handles)]
