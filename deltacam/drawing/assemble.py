@@ -7,7 +7,7 @@ people can see what they leave out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -62,7 +62,7 @@ def assemble(found: Drawn, assigned: Assignment, joining: float) -> Assembled:
         joining: largest distance of ends that are joined, m.
 
     Raises:
-        DrawingError: thousands of ends in one place.
+        DrawingError: thousands of ends in one place, or of contours in each other.
     """
     result = Assembled()
     lines: list[_Line] = []
@@ -89,8 +89,10 @@ def _join(
     joined = join.join(found.curves.take(which), joining=joining, name=lambda i: found.entities[owner[i]].where)
     result.notes |= {owner[i]: note for i, note in joined.notes.items()}
     result.copies |= {owner[later]: owner[first] for later, first in joined.copies.items()}
-    if operation is not Operation.IGNORE:
+    if operation is Operation.CUT:
         result.findings += joined.findings
+    elif operation is Operation.ENGRAVE:  # on the line itself, however lines meet
+        result.findings += (replace(finding, blocks=False) for finding in joined.findings)
     lines = [
         _Line(loop.curve, tuple(owner[i] for i in loop.members), operation, error=loop.error) for loop in joined.loops
     ]

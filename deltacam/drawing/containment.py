@@ -21,8 +21,12 @@ import numpy as np
 from deltacam.drawing import crossings, flaws, rings
 from deltacam.drawing.flaws import place
 from deltacam.drawing.outlines import SAGITTA, Outlines, is_mess
+from deltacam.errors import DrawingError
 from deltacam.geometry.pack import Pack
 from deltacam.model import BoolArray, Contour, Curve, Finding, IntArray
+
+MOST_NESTED: Final = 2_000_000
+"""More pairs of contours of which one lies in the other, and 50 for each contour, are refused."""
 
 _BATCH: Final = 256
 
@@ -34,13 +38,16 @@ def nest(
 ) -> tuple[tuple[Contour, ...], list[Finding]]:
     """The contours with their depth and parent, and findings where they meet or lie in something open.
 
-    Time and memory grow about linearly with the number of contours; that each of n contours lies in the next takes time
-    in proportion to n squared, 10 s for 10 000.
+    Time and memory grow about linearly with the number of contours, and time with the number of pairs of which one
+    lies in the other.
 
     Args:
         contours: closed.
         outlines: open curves that are closed but for a gap, m.
         tangles: open curves between points where more than two lines meet, m.
+
+    Raises:
+        DrawingError: contours lie in each other by the thousands.
     """
     import shapely
 
@@ -81,9 +88,14 @@ def _nesting(shapes: Outlines, inside: Any, crossing: IntArray) -> tuple[IntArra
 
 
 def _around(shapes: Outlines, inside: Any, counted: BoolArray, crossing: IntArray) -> tuple[IntArray, IntArray]:
-    """Depth and parent of each contour, (M,), among the larger ones that count and do not cross it."""
+    """Depth and parent of each contour, (M,), among the larger ones that count and do not cross it.
+
+    Raises:
+        DrawingError: more pairs than ``MOST_NESTED``.
+    """
     import shapely
 
+    left = MOST_NESTED + 50 * len(inside)
     areas, count = shapes.areas, len(inside)
     tree = shapely.STRtree(inside)
     depth, parent = np.zeros(count, dtype=np.int64), np.full(count, -1)
@@ -93,6 +105,10 @@ def _around(shapes: Outlines, inside: Any, counted: BoolArray, crossing: IntArra
     for begin in range(0, len(by_size), _BATCH):
         those = by_size[begin : begin + _BATCH]
         outer, inner = tree.query(shapes.polygons[those], predicate="contains")
+        left -= len(outer)
+        if left < 0:
+            what = "thousands of contours lie in each other"
+            raise DrawingError(what, hint="save only what is to be cut; hatching is not drawn as contours")
         outer = those[outer]
         around = areas[outer] > areas[inner]
         if len(apart):

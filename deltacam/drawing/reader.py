@@ -13,13 +13,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from deltacam.drawing import document, entities, layers, operations, remarks, scale
 from deltacam.drawing.assemble import Assembled, assemble
 from deltacam.drawing.entities import Drawn
 from deltacam.errors import DrawingError
 from deltacam.model import EVERYTHING, Drawing, Finding, LedgerEntry, Operation, Outcome, Selection
+
+_LARGE: Final = 10_000_000
+"""Above so many bytes it pays to free the document before its curves are joined."""
 
 
 def read_drawing(
@@ -63,7 +66,7 @@ def _read(
     """`read_drawing`, with its arguments."""
     data = document.read_bytes(path)
     loaded = document.load(data, path.name)
-    source = loaded.document
+    source, lost, damage = loaded.document, loaded.lost, loaded.findings
     header = scale.read_header(source, data)
     chosen = scale.choose(header, unit=unit, metres_per_unit=metres_per_unit, default=default_unit)
     found = entities.read(source, chosen.metres)
@@ -72,10 +75,13 @@ def _read(
         raise _without_lines(found, paper, path.name)
     table = layers.tabulate(source, found.entities, found.owner)
     operations.check_patterns(selection, [layer.name for layer in table])
+    del source, loaded
+    if len(data) > _LARGE:
+        gc.collect()
     joined = assemble(found, operations.assign(found.entities, selection), selection.joining)
     extents = _extents(found)
     findings = [
-        *(_accepted(finding, selection) for finding in (*loaded.findings, *found.findings)),
+        *(_accepted(finding, selection) for finding in (*damage, *found.findings)),
         *scale.findings(chosen, (extents[2] - extents[0], extents[3] - extents[1]), header),
         *joined.findings,
         *_nothing_to_machine(found, joined),
@@ -96,7 +102,7 @@ def _read(
         unit_source=chosen.source,
         contours=tuple(contour for contour in joined.contours if contour.operation is not Operation.IGNORE),
         ignored=tuple(contour for contour in joined.contours if contour.operation is Operation.IGNORE),
-        ledger=(*_ledger(found, joined), *loaded.lost),
+        ledger=(*_ledger(found, joined), *lost),
         findings=tuple(findings),
         conversion_error=joined.error,
         layers=table,

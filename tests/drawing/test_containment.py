@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from deltacam.drawing import containment
 from deltacam.drawing.containment import nest
+from deltacam.errors import DrawingError
 from deltacam.geometry import curve as curves
 from deltacam.model import Contour, Curve, Finding
 
@@ -192,3 +194,11 @@ def test_a_thousand_holes_are_nested_quickly() -> None:
     holes = [disc(10 * (i % 32), 10 * (i // 32), 4) for i in range(1000)]
     depths = nested(box(-10, -10, 400, 400), *holes)
     assert depths == [(0, None)] + [(1, 1)] * 1000
+
+
+def test_contours_nested_by_the_thousands_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(containment, "MOST_NESTED", 0)
+    discs = contours(*(disc(0.0, 0.0, 10.0 + i) for i in range(110)))
+    assert max(one.depth for one in nest(discs[:60])[0]) == 59
+    with pytest.raises(DrawingError, match="thousands of contours lie in each other"):
+        nest(discs)

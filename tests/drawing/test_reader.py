@@ -410,6 +410,19 @@ def test_the_two_edges_of_a_thick_line_are_noted(reread: Any) -> None:
     assert found[0].place == pytest.approx((4.85e-3, 0.0))
 
 
+def test_engraved_lines_may_meet_in_any_way(reread: Any) -> None:
+    def draw(msp: Any) -> None:
+        square(msp)
+        for start, end in [((10, 10), (50, 10)), ((50, 10), (30, 40)), ((30, 40), (10, 10)), ((30, 40), (90, 90))]:
+            msp.add_line(start, end, dxfattribs={"layer": "ENGRAVE"})
+        msp.add_line((10, 10), (30, 20), dxfattribs={"layer": "ENGRAVE"})
+        msp.add_line((30, 20), (50, 10), dxfattribs={"layer": "ENGRAVE"})
+
+    drawing = reread(draw)
+    assert {entry.outcome for entry in drawing.ledger[1:]} == {Outcome.ENGRAVED}
+    assert any(finding.kind in ("branch", "common_edge") for finding in drawing.findings)
+
+
 @pytest.mark.parametrize("was_on", [True, False])
 def test_the_collector_of_garbage_is_left_as_it_was(reread: Any, was_on: bool) -> None:
     (gc.enable if was_on else gc.disable)()
