@@ -77,7 +77,7 @@ def read(container: Any, context: Context, styles: dict[str, Style]) -> Content:
             except Exception as error:  # noqa: BLE001  # damaged numbers make ezdxf and numpy stumble over anything
                 reason, lost = _what(error), True
         elif _KIND.fullmatch(kind):
-            reason = kinds.why_not(kind)
+            reason, lost = kinds.why_not(kind), not kinds.is_known(kind)
         else:
             reason, lost = f"where a kind of entity is expected the file says {printable(kind)[:40]!r}", True
             kind = _UNKNOWN

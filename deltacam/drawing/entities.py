@@ -11,6 +11,7 @@ then copied to its places.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -22,7 +23,7 @@ from deltacam.drawing.entity import Context, Entity
 from deltacam.drawing.traces import Traces
 from deltacam.errors import DrawingError
 from deltacam.geometry.pack import Pack
-from deltacam.model import Array, Finding, IntArray
+from deltacam.model import Array, BoolArray, Finding, IntArray
 
 __all__ = ["MAX_REACH", "MAX_VERTICES", "Drawn", "Entity", "read"]
 
@@ -67,12 +68,15 @@ class _Expanded:
     curves: Traces
 
 
-def read(document: Any, metres_per_unit: float) -> Drawn:
+def read(
+    document: Any, metres_per_unit: float, *, concerns: Callable[[Sequence[Entity]], BoolArray] | None = None
+) -> Drawn:
     """Every entity of the modelspace in the order of the file, those of blocks after their INSERT.
 
     Args:
         document: from ``document.load``.
         metres_per_unit: the scale from the file's numbers to metres.
+        concerns: says of N entities which, (N,), findings are to be made of; all where it is not given.
 
     Raises:
         DrawingError: blocks that hold themselves, more entities or vertices than any drawing needs, no modelspace.
@@ -85,14 +89,22 @@ def read(document: Any, metres_per_unit: float) -> Drawn:
     walk = _Walk(document)
     whole = walk.expand(modelspace, Context(), metres_per_unit * np.eye(3))
     entities, curves = _within_reach(whole.entities, whole.curves)
+    concerns = concerns or (lambda those: np.ones(len(those), dtype=np.bool_))
+    concerned = concerns(entities)
     findings = [
-        *losses.lost(entities),
-        *losses.not_flat(entities, curves),
-        *losses.wide(list(walk.wide.values())),
-        *losses.guessed(list(walk.guessed.values())),
+        *losses.lost([entities[i] for i in np.flatnonzero(concerned).tolist()]),
+        *losses.not_flat(entities, curves.take(np.flatnonzero(concerned[curves.owner]))),
+        *losses.wide(_those(concerns, walk.wide)),
+        *losses.guessed(_those(concerns, walk.guessed)),
     ]
     pack = Pack(curves.points, curves.bulges, curves.first, curves.closed)
     return Drawn(entities, pack, curves.owner, tuple(findings))
+
+
+def _those(concerns: Callable[[Sequence[Entity]], BoolArray], named: dict[str, Entity]) -> list[Entity]:
+    """The entities that findings are to be made of."""
+    entities = list(named.values())
+    return [entities[i] for i in np.flatnonzero(concerns(entities)).tolist()]
 
 
 class _Walk:

@@ -26,8 +26,9 @@ _IGNORED: Final = {
     **dict.fromkeys(("IMAGE", "PDFUNDERLAY", "DWFUNDERLAY", "DGNUNDERLAY", "OLE2FRAME", "OLEFRAME"), "a picture"),
     **dict.fromkeys(("RAY", "XLINE"), "a construction line without an end"),
     **dict.fromkeys(("3DFACE", "3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "HELIX"), "a body or face in space"),
+    **dict.fromkeys(("EXTRUDEDSURFACE", "LOFTEDSURFACE", "PLANESURFACE", "REVOLVEDSURFACE"), "a body or face in space"),
+    **dict.fromkeys(("NURBSURFACE", "SWEPTSURFACE", "SECTIONOBJECT"), "a body or face in space"),
     **dict.fromkeys(("VIEWPORT", "ACAD_TABLE", "LIGHT", "SUN", "SECTION", "GEODATA"), "not geometry of the part"),
-    **dict.fromkeys(("ACAD_PROXY_ENTITY", "ACAD_PROXY_OBJECT"), "an object that only its own program can draw"),
     "POINT": "a point is not a line",
     "SHAPE": "a symbol from a font",
     "MLINE": "a multiple line: explode it to lines if it is to be cut",
@@ -47,7 +48,12 @@ def is_drawn(kind: str) -> bool:
 
 def why_not(kind: str) -> str:
     """Why entities of this kind are not cut, in words."""
-    return _IGNORED.get(kind, f"deltacam does not cut {kind} entities")
+    return _IGNORED.get(kind, "an object that only the program that made it can draw")
+
+
+def is_known(kind: str) -> bool:
+    """Whether the DXF reference says what entities of this kind draw."""
+    return kind in _IGNORED or is_drawn(kind)
 
 
 def gather(kind: str, raw: Any, index: int, into: Gathered) -> str:

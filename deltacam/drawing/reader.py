@@ -15,11 +15,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from deltacam.drawing import document, entities, layers, operations, remarks, scale
 from deltacam.drawing.assemble import Assembled, assemble
-from deltacam.drawing.entities import Drawn
+from deltacam.drawing.entities import Drawn, Entity
 from deltacam.errors import DrawingError
-from deltacam.model import EVERYTHING, Drawing, Finding, LedgerEntry, Operation, Outcome, Selection
+from deltacam.model import EVERYTHING, BoolArray, Drawing, Finding, LedgerEntry, Operation, Outcome, Selection
 
 _LARGE: Final = 10_000_000
 """Above so many bytes it pays to free the document before its curves are joined."""
@@ -69,7 +71,7 @@ def _read(
     source, lost, damage = loaded.document, loaded.lost, loaded.findings
     header = scale.read_header(source, data)
     chosen = scale.choose(header, unit=unit, metres_per_unit=metres_per_unit, default=default_unit)
-    found = entities.read(source, chosen.metres)
+    found = entities.read(source, chosen.metres, concerns=lambda those: _concern(those, selection))
     paper = _in_paper_space(source)
     if not len(found.curves):
         raise _without_lines(found, paper, path.name)
@@ -131,6 +133,12 @@ def _extents(found: Drawn) -> tuple[float, float, float, float]:
     boxes = found.curves.bounds()
     low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _concern(those: Sequence[Entity], selection: Selection) -> BoolArray:
+    """Which entities matter: those that are not ignored, and every INSERT, whatever the layers in its block are."""
+    inserts = np.array([entity.kind == "INSERT" for entity in those], dtype=np.bool_)
+    return inserts | ~operations.assign(those, selection).of(Operation.IGNORE)
 
 
 def _accepted(finding: Finding, selection: Selection) -> Finding:

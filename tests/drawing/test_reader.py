@@ -365,6 +365,36 @@ def test_lost_geometry_blocks_until_the_loss_is_accepted(reread: Any) -> None:
         assert "MISSING" in entry.reason
 
 
+def test_damage_on_a_layer_that_is_left_out_does_not_matter(reread: Any) -> None:
+    def draw(msp: Any) -> None:
+        square(msp)
+        msp.add_line((0, 0, 0), (1, 1, 5), dxfattribs={"layer": "NOTES"})
+        msp.add_circle((5, 5), -1, dxfattribs={"layer": "NOTES"})
+
+    with pytest.raises(DrawingError):
+        reread(draw)
+    drawing = reread(draw, selection=Selection(ignored_layers=("NOTES",)))
+    assert len(drawing.contours) == 1
+    assert Outcome.LOST in {entry.outcome for entry in drawing.ledger}
+
+    def insert(msp: Any) -> None:
+        square(msp)
+        msp.add_blockref("MISSING", (5, 5), dxfattribs={"layer": "NOTES"})
+
+    with pytest.raises(DrawingError, match="MISSING"):
+        reread(insert, selection=Selection(ignored_layers=("NOTES",)))
+
+
+def test_an_object_of_an_unknown_kind_blocks_until_the_loss_is_accepted(tmp_path: Path) -> None:
+    path = tmp_path / "part.dxf"
+    data = (FILES / "wrench-inch.dxf").read_bytes()
+    path.write_bytes(data.replace(b"\r\nLINE\r\n", b"\r\nBEAM\r\n", 1))
+    with pytest.raises(DrawingError, match="BEAM is lost: an object that only the program that made it can draw"):
+        read_drawing(path)
+    drawing = read_drawing(path, selection=Selection(accept_loss=True), strict=False)
+    assert [entry.kind for entry in drawing.ledger if entry.outcome is Outcome.LOST] == ["BEAM"]
+
+
 def test_a_drawing_without_a_unit_can_be_looked_at(reread: Any) -> None:
     drawing = reread(square, insunits=0, strict=False)
     assert (drawing.unit, drawing.unit_source, drawing.metres_per_unit) == ("", "missing", 1e-3)
