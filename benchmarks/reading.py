@@ -82,7 +82,9 @@ KINDS = {"lines": lines, "mixed": mixed}
 def measure(path: str) -> None:
     """Read one drawing in this process, as ``read_drawing`` does, and print seconds by stage and memory as JSON."""
     gc.disable()
-    from deltacam.drawing import assemble, document, entities, operations
+    from deltacam.drawing import assemble, operations
+    from deltacam.drawing.dxf import document
+    from deltacam.drawing.entities import walk
     from deltacam.model import EVERYTHING
 
     base = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
@@ -90,7 +92,7 @@ def measure(path: str) -> None:
     data = Path(path).read_bytes()
     loaded = document.load(data, "drawing.dxf")
     marks.append(time.perf_counter())
-    found = entities.read(loaded.document, 1e-3)
+    found = walk.read(loaded.document, 1e-3)
     marks.append(time.perf_counter())
     joined = assemble.assemble(found, operations.assign(found.entities, EVERYTHING), EVERYTHING.joining)
     marks.append(time.perf_counter())

@@ -11,8 +11,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from deltacam.drawing import containment, join
-from deltacam.drawing.entities import Drawn
+from deltacam.drawing.entities.walk import Drawn
+from deltacam.drawing.joining import join
+from deltacam.drawing.nesting import containment
 from deltacam.drawing.operations import Assignment
 from deltacam.model import Contour, Curve, Finding, IntArray, Operation, Outcome
 

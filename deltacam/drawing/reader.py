@@ -17,9 +17,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from deltacam.drawing import document, entities, layers, operations, remarks, scale
+from deltacam.drawing import operations, remarks, scale
 from deltacam.drawing.assemble import Assembled, assemble
-from deltacam.drawing.entities import Drawn, Entity
+from deltacam.drawing.dxf import document
+from deltacam.drawing.entities import layers, walk
+from deltacam.drawing.entities.walk import Drawn, Entity
 from deltacam.errors import DrawingError
 from deltacam.model import EVERYTHING, BoolArray, Drawing, Finding, LedgerEntry, Operation, Outcome, Selection
 
@@ -71,7 +73,7 @@ def _read(
     source, lost, damage = loaded.document, loaded.lost, loaded.findings
     header = scale.read_header(source, data)
     chosen = scale.choose(header, unit=unit, metres_per_unit=metres_per_unit, default=default_unit)
-    found = entities.read(source, chosen.metres, concerns=lambda those: _concern(those, selection))
+    found = walk.read(source, chosen.metres, concerns=lambda those: _concern(those, selection))
     paper = _in_paper_space(source)
     if not len(found.curves):
         raise _without_lines(found, paper, path.name)

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from deltacam.drawing.entities import Drawn, Entity
+from deltacam.drawing.entities.walk import Drawn, Entity
 from deltacam.geometry import curve as curves
 from deltacam.geometry.pack import Pack
 from deltacam.model import Contour, Finding, Layer

@@ -12,7 +12,7 @@ from typing import Any
 import ezdxf
 import pytest
 
-from deltacam.drawing import document
+from deltacam.drawing.dxf import document
 from deltacam.drawing.reader import read_drawing
 from deltacam.errors import DeltacamError, DrawingError
 from deltacam.geometry import curve as curves
@@ -388,7 +388,8 @@ def test_damage_on_a_layer_that_is_left_out_does_not_matter(reread: Any) -> None
 def test_an_object_of_an_unknown_kind_blocks_until_the_loss_is_accepted(tmp_path: Path) -> None:
     path = tmp_path / "part.dxf"
     data = (FILES / "wrench-inch.dxf").read_bytes()
-    path.write_bytes(data.replace(b"\r\nLINE\r\n", b"\r\nBEAM\r\n", 1))
+    first = data.index(b"\r\nLINE\r\n", data.index(b"ENTITIES"))
+    path.write_bytes(data[:first] + b"\r\nBEAM" + data[first + 6 :])
     with pytest.raises(DrawingError, match="BEAM is lost: an object that only the program that made it can draw"):
         read_drawing(path)
     drawing = read_drawing(path, selection=Selection(accept_loss=True), strict=False)

@@ -17,7 +17,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from deltacam.drawing import entities
+from deltacam.drawing.entities import walk
 from deltacam.model import Array, Curve
 
 MILLIMETRE = 1e-3
@@ -171,7 +171,7 @@ def test_every_curve_runs_where_the_exact_geometry_runs(shapes: list[Drawn], nes
         matrices = [inner @ outer for outer in places for inner in matrices]
     stream = io.StringIO()
     document.write(stream)
-    found = entities.read(ezdxf.read(io.StringIO(stream.getvalue())), MILLIMETRE)
+    found = walk.read(ezdxf.read(io.StringIO(stream.getvalue())), MILLIMETRE)
     assert not found.findings
     assert len(found.curves) == len(shapes) * len(matrices)
     for k, curve in enumerate(found.curves):

@@ -1,0 +1,1 @@
+"""An ezdxf document to entities with curves in the sheet plane."""

@@ -1,0 +1,1 @@
+"""Curves to closed loops and open chains."""

@@ -1,0 +1,1 @@
+"""Which contour lies in which, and where they meet."""
