@@ -51,19 +51,17 @@ class Meetings:
 
 def with_themselves(contours: Sequence[Contour], shapes: Outlines) -> list[Finding]:
     """One finding per contour that really crosses or touches itself, beyond rounding."""
-    suspects = np.flatnonzero(~shapes.simple).tolist()
-    found = [_self_crossing(contours[i], shapes.rings[i]) for i in suspects[:_EXAMINED]]
+    suspects = list(shapes.tangled.items())
+    found = [_self_crossing(contours[i], ring) for i, ring in suspects[:_EXAMINED]]
     bad = [finding for finding in found if finding]
     return flaws.limited(bad, len(bad) + max(len(suspects) - _EXAMINED, 0)) if bad else []
 
 
 def between(contours: Sequence[Contour], shapes: Outlines) -> Meetings:
     """The pairs of contours that meet, and how."""
-    import shapely
-
     pairs, complete = _meeting_pieces(shapes.pieces)
     rings, which = np.unique(shapes.pieces.ring_of[pairs], axis=0, return_inverse=True)
-    points = np.cumsum(shapely.get_num_points(shapes.rings)[rings].sum(axis=1))
+    points = np.cumsum(shapes.vertices[rings].sum(axis=1))
     told = int(np.searchsorted(points, MOST_POINTS))
     complete &= told == len(rings)
     rings, used = rings[:told], which.reshape(-1) < told

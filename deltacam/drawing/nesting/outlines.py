@@ -11,7 +11,7 @@ import numpy as np
 from deltacam.drawing.nesting import rings
 from deltacam.drawing.nesting.pieces import Pieces
 from deltacam.geometry.pack import Pack
-from deltacam.model import Array, BoolArray, Curve
+from deltacam.model import Array, Curve, IntArray
 
 SAGITTA: Final = 1e-6
 """How far the polygons that stand for contours leave their arcs, m."""
@@ -25,15 +25,15 @@ class Outlines:
     """M closed curves in the form that shapely works on.
 
     Attributes:
-        rings: (M,) their rings.
-        simple: (M,) whether each meets itself nowhere.
+        vertices: (M,) how many each ring has.
+        tangled: the rings that meet themselves, by index.
         polygons: (M,) what is inside, valid; the largest part where the ring meets itself.
         areas: (M,) of the polygons, m2.
         pieces: the rings in short pieces, but for those that cross themselves all over.
     """
 
-    rings: Any
-    simple: BoolArray
+    vertices: IntArray
+    tangled: dict[int, Any]
     polygons: Any
     areas: Array
     pieces: Pieces
@@ -45,14 +45,18 @@ class Outlines:
 
         points, ring_of = rings.full(*rings.flatten(Pack.of(curves), SAGITTA))
         loops = shapely.linearrings(points, indices=ring_of)
-        simple = shapely.is_simple(loops)
+        vertices = shapely.get_num_points(loops).astype(np.int64)
+        tangled = {i: loops[i] for i in np.flatnonzero(~shapely.is_simple(loops)).tolist()}
         polygons = shapely.polygons(loops)
-        clear = np.ones(len(loops), dtype=np.bool_)
-        for i in np.flatnonzero(~simple).tolist():
-            clear[i] = not is_mess(loops[i])
-            polygons[i] = _valid(loops[i]) if clear[i] else shapely.convex_hull(loops[i])
-        kept = clear[ring_of]
-        return cls(loops, simple, polygons, shapely.area(polygons), Pieces.of(points[kept], ring_of[kept]))
+        del loops  # the polygons have copies; a million rings are a gigabyte
+        clear = np.ones(len(polygons), dtype=np.bool_)
+        for i, loop in tangled.items():
+            clear[i] = not is_mess(loop)
+            polygons[i] = _valid(loop) if clear[i] else shapely.convex_hull(loop)
+        if not clear.all():
+            kept = clear[ring_of]
+            points, ring_of = points[kept], ring_of[kept]
+        return cls(vertices, tangled, polygons, shapely.area(polygons), Pieces.of(points, ring_of))
 
 
 def is_mess(line: Any) -> bool:

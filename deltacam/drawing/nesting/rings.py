@@ -115,5 +115,7 @@ def full(points: Array, curve: IntArray) -> tuple[Array, IntArray]:
     last = np.cumsum(counts) - 1
     shut = (points[last] == points[last - counts + 1]).all(axis=1)
     short = np.flatnonzero((counts < 3) | ((counts == 3) & shut))
+    if not len(short):
+        return points, curve
     at = np.repeat(last[short], 4 - counts[short])
     return np.insert(points, at, points[at], axis=0), np.insert(curve, at, curve[at])
