@@ -14,6 +14,12 @@ from deltacam.model import Array, BoolArray, IntArray
 MOST_PAIRS: Final = 20_000_000
 """More pairs of segments with overlapping boxes are not looked at."""
 
+_RISE: Final = 1e-9
+"""Arcs that leave their chord by less, m, run along lines: part of them is a line by its numbers already."""
+
+_FLAT: Final = 0.05
+"""Bulges below which the circle of an arc is too large to be compared by its centre."""
+
 _BATCH: Final = 1024
 
 
@@ -28,7 +34,7 @@ class Segments:
         bulges: (S,).
         lengths: (S,) m.
         centre: (S, 2) m, of the circle of each arc; the start of each line.
-        radius: (S,) m; 0 for lines.
+        radius: (S,) m; 0 for lines, and for arcs that are as good as lines.
     """
 
     pack: Pack
@@ -46,10 +52,10 @@ class Segments:
         both = np.column_stack([bulges, np.zeros(count)]).reshape(-1)
         first = 2 * np.arange(count + 1)
         pack = Pack(np.stack([start, end], axis=1).reshape(-1, 2), both, first, np.zeros(count, dtype=np.bool_))
-        bent = bulges != 0.0
+        chord = end - start
+        bent = np.abs(bulges) * np.hypot(*chord.T) > 2.0 * _RISE
         safe = np.where(bent, bulges, 1.0)
         # From the middle of the chord the centre lies (1 - b^2) / (4 b) chords to the left.
-        chord = end - start
         left = np.column_stack([-chord[:, 1], chord[:, 0]])
         centre = 0.5 * (start + end) + left * ((1.0 - safe**2) / (4.0 * safe))[:, None]
         centre = np.where(bent[:, None], centre, start)
@@ -99,25 +105,39 @@ class Segments:
             seen += len(one)
             if seen > MOST_PAIRS:
                 break
-            kind = (one < other) & ((self.radius[one] > 0.0) == (self.radius[other] > 0.0))
-            one, other = one[kind], other[kind]
-            bent = self.radius[one] > 0.0
+            one, other = one[one < other], other[one < other]
+            flat = (np.abs(self.bulges) < _FLAT)[np.stack([one, other])].any(axis=0)
             along = np.zeros(len(one), dtype=np.bool_)
-            along[~bent] = self._lines_overlap(one[~bent], other[~bent])
-            along[bent] = self._arcs_overlap(one[bent], other[bent])
+            along[flat] = self._run_along(one[flat], other[flat])
+            along[~flat] = self._arcs_overlap(one[~flat], other[~flat])
             found.append(np.column_stack([one[along], other[along]]))
         pairs = np.concatenate(found)
         return np.asarray(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))])
 
-    def _lines_overlap(self, one: IntArray, other: IntArray) -> BoolArray:
-        """Whether each pair of lines runs along each other."""
-        begin, off_begin = self.along(one, self.start[other])
-        end, off_end = self.along(one, self.end[other])
-        low = np.maximum(np.minimum(begin, end), 0.0)
-        high = np.minimum(np.maximum(begin, end), self.lengths[one])
-        slope = (off_end - off_begin) / np.where(np.abs(end - begin) > SAME, end - begin, np.inf)
-        apart = np.maximum(*(np.abs(off_begin + (place - begin) * slope) for place in (low, high)))
-        return np.asarray((high - low > SAME) & (apart <= SAME))
+    def _run_along(self, one: IntArray, other: IntArray) -> BoolArray:
+        """Whether each pair, of which one is a line or nearly so, runs along each other.
+
+        The ends of a common stretch are ends of the two; what they share there and half-way they share everywhere.
+        """
+        places = []
+        for point in (self.start[other], self.end[other]):
+            on, place = self._on(one, point)
+            places.append(np.where(on, place, np.nan))
+        for point, place in ((self.start[one], np.zeros(len(one))), (self.end[one], self.lengths[one])):
+            on, _ = self._on(other, point)
+            places.append(np.where(on, place, np.nan))
+        low, high = np.fmin.reduce(places), np.fmax.reduce(places)
+        long = high - low > SAME  # false for nan
+        middle, _ = self._on(other, self.at(one, np.where(long, 0.5 * (low + high), 0.0)))
+        return np.asarray(long & middle)
+
+    def _on(self, which: IntArray, points: Array) -> tuple[BoolArray, Array]:
+        """Whether the points, (K, 2), lie on the segments of ``which``, (K,), and how far along, m."""
+        place, off = self.along(which, points)
+        lengths, around = self.lengths[which], 2.0 * np.pi * self.radius[which]
+        # What is a little before the start of an arc is nearly a whole turn after it.
+        place = np.where((around > 0.0) & (place > 0.5 * (lengths + around)), place - around, place)
+        return (np.abs(off) <= SAME) & (place >= -SAME) & (place <= lengths + SAME), place
 
     def _arcs_overlap(self, one: IntArray, other: IntArray) -> BoolArray:
         """Whether each pair of arcs is on one circle and runs along each other."""
