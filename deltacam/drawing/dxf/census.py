@@ -54,6 +54,12 @@ _ONCE: Final = {
 }
 """Group codes that cannot come twice, unless the head of the next entity is missing and the two run together."""
 
+_EMBEDDED: Final = 101
+"""Group code from which on an entity holds another object, as MTEXT does since R2018."""
+
+_VARIABLE: Final = 9
+"""Group code of the name of a header variable."""
+
 _NEVER: Final = {"SEQEND": 10, "ENDBLK": 10, "ENDSEC": 10, "TABLE": 10, "ENDTAB": 10}
 """Group codes that do not belong there, unless the head of the next entity is missing."""
 
@@ -61,11 +67,14 @@ _NEVER: Final = {"SEQEND": 10, "ENDBLK": 10, "ENDSEC": 10, "TABLE": 10, "ENDTAB"
 def flaw(group: Group) -> str:
     """Why a group seems to be more than one, in words; empty where it does not."""
     codes = [code for code, _ in group.tags]
+    if _EMBEDDED in codes:
+        codes = codes[: codes.index(_EMBEDDED)]
     twice = [code for code in _ONCE.get(group.kind, ()) if codes.count(code) > 1]
     if twice:
         return f"group code {twice[0]} comes twice, as if two entities ran together"
     never = _NEVER.get(group.kind, 10 if _is_head(group) else -1)
-    return "an entity without its start" if never in codes else ""
+    more_header = group.kind == "ENDSEC" and _VARIABLE in codes
+    return "an entity without its start" if never in codes and not more_header else ""
 
 
 def _is_head(group: Group) -> bool:
@@ -80,8 +89,9 @@ def _run_together(groups: Groups) -> bool:
     kinds = np.array(groups.kinds)
     for code in {code for once in _ONCE.values() for code in once}:
         counts = np.bincount(of[(codes == code) & (of >= 0)], minlength=len(groups))
-        several = kinds[counts > 1]
-        if any(code in _ONCE.get(str(kind), ()) for kind in np.unique(several)):
+        several = np.flatnonzero(counts > 1)
+        usual = [kind for kind in np.unique(kinds[several]) if code in _ONCE.get(str(kind), ())]
+        if any(flaw(groups.group(i)) for i in several[np.isin(kinds[several], usual)].tolist()):
             return True
     with_point = np.unique(of[(codes == 10) & (of >= 0)])
     suspects = with_point[np.isin(kinds[with_point], [*_NEVER, "SECTION"])]

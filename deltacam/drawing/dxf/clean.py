@@ -248,7 +248,8 @@ def _as_it_is(group: Group) -> str:
     first = next((i for i, (code, value) in enumerate(own) if code == 100 and value != b"AcDbEntity"), None)
     if first is None or not group.whole:
         return "".join(f"100\n{_marker(group.kind)}\n" for _ in range(2))
-    return "".join(f"{code}\n{text(value)}\n" for code, value in own[first:])
+    # The layer is in the head already.
+    return "".join(f"{code}\n{text(value)}\n" for code, value in own[first:] if code != 8)
 
 
 def _marker(kind: str) -> str:

@@ -225,6 +225,8 @@ def _refuse_empty(repaired: Repaired, groups: Groups, file: str, reason: str) ->
         raise DrawingError(
             "the file is cut off before the end of its entities: none is left", where=file, hint=_EXPORT_AGAIN
         )
+    if not repaired.lost and census.DRAWN.isdisjoint(groups.kinds):
+        raise DrawingError("nothing to cut: the file holds no line", where=file, hint=_EXPORT_AGAIN)
     what = f"the file is damaged: {reason}"
     if repaired.lost:
         what = f"the file is damaged: none of its {len(repaired.lost)} entities can be read: {repaired.lost[0].reason}"

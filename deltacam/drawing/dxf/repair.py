@@ -93,6 +93,7 @@ class _Walk:
     block: _Block | None = None
     parent: _Parent | None = None
     opened: bool = False
+    any_section: bool = False
     started: bool = True
     ended: bool = True
     handles: set[bytes] = field(default_factory=set)
@@ -149,7 +150,7 @@ class _Walk:
 
     def _open_section(self, group: Group) -> None:
         self._close_block()
-        self.opened = True
+        self.opened = self.any_section = True
         self.section = clean.text(group.first(2)).upper()
         if self.section != "HEADER":
             return
@@ -163,7 +164,7 @@ class _Walk:
     def _close_section(self, kind: str) -> None:
         """The end of a section; where it was never opened the start of the file is missing."""
         self._close_block()
-        if kind == "ENDSEC" and not self.opened:
+        if kind == "ENDSEC" and not self.opened and not (self.any_section and self.ended):
             self.started = False
         self.opened, self.section, self.ended = False, "", True
 

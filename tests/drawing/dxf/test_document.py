@@ -278,3 +278,31 @@ def test_ezdxf_is_not_asked_to_recover_large_files(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(document.recover, "read", lambda _: pytest.fail("it was recovered"))
     loaded = read(entities(LINE * 100).removesuffix("0\nEOF\n"))
     assert (loaded.reader, len(kinds(loaded)), loaded.lost) == ("tolerant", 100, ())
+
+
+MTEXT = "0\nMTEXT\n5\n9A\n100\nAcDbEntity\n8\nN\n100\nAcDbMText\n10\n1\n20\n2\n40\n3\n1\nnote\n"
+EMBEDDED = "101\nEmbedded Object\n70\n1\n10\n1\n20\n0\n11\n1\n21\n2\n40\n7\n"
+
+
+def test_a_text_that_holds_another_object_is_not_two_texts() -> None:
+    loaded = read(entities(LINE, MTEXT + EMBEDDED))
+    assert (loaded.reader, loaded.lost, loaded.findings) == ("plain", (), ())
+    assert kinds(loaded) == ["LINE", "MTEXT"]
+
+
+def test_a_text_with_its_layer_in_an_odd_place_beside_a_damaged_header_is_kept() -> None:
+    header = "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n0\nENDSEC\n9\n$EXTMIN\n10\n0\n20\n0\n0\nENDSEC\n"
+    odd = MTEXT.replace("100\nAcDbEntity\n8\nN\n100\nAcDbMText\n", "100\nAcDbMText\n8\nN\n")
+    loaded = read(header + entities(LINE, odd))
+    assert (loaded.reader, loaded.lost) == ("tolerant", ())
+    assert [finding.kind for finding in loaded.findings] == ["recovered"]
+    assert kinds(loaded) == ["LINE", "MTEXT"]
+
+
+def test_a_file_that_begins_inside_an_entity_is_never_taken_for_complete() -> None:
+    assert blocking(read("10\n5\n20\n5\n0\nENDSEC\n" + entities(LINE)))
+
+
+def test_blocks_without_names_and_nothing_else_are_nothing_to_cut() -> None:
+    with pytest.raises(DrawingError, match="nothing to cut: the file holds no line"):
+        read(blocks("0\nBLOCK\n2\n\n0\nENDBLK\n", "0\nBLOCK\n2\n\n0\nENDBLK\n") + entities())
