@@ -160,11 +160,9 @@ def cut_length(comparison: Comparison) -> Check:
 def _length_slack(target: Target) -> float:
     """How much longer or shorter a curve at the distance d beside the path may be, in multiples of d.
 
-    That is 2 pi for a closed curve that does not cross itself. A line that is followed may bend more often, and each
-    corner that is rounded within d makes it shorter by less than 2 d.
+    That is 2 pi for a closed curve that does not cross itself. Each corner that is rounded within d makes it shorter by
+    less than 2 d.
     """
-    if target.contour.has_kerf:
-        return 2.0 * np.pi
     corners = [sharp_corners(ring, closed=target.contour.curve.closed) for ring in target.rings]
     return 2.0 * np.pi + 2.0 * sum(len(turn) for _, turn in corners)
 

@@ -51,7 +51,8 @@ def link(pack: Pack, chains: list[Steps], *, closed: bool) -> tuple[Pack, Array]
     """The curve of each chain, and how far an end of it had to move, (K,) m.
 
     Where two ends differ, the end of a line moves to that of an arc; of two of a kind the second moves to the first.
-    Ends further apart than they may be moved get a straight piece between them.
+    Ends further apart than they may be moved get a straight piece between them; but where a line runs past the other
+    end it is shortened.
 
     Args:
         pack: open curves.
@@ -89,11 +90,27 @@ def _joints(pack: Pack, run: _Run) -> tuple[Array, Array, BoolArray]:
     turned = (run.steps & 1).astype(np.bool_)
     opening = pack.bulges[np.where(turned, run.begin - 1, run.begin)]
     closing = pack.bulges[np.where(turned, run.end, run.end - 1)][before]
+    inner = pack.points[np.where(turned, run.end + 1, run.end - 1)][before]
+    outer = pack.points[np.where(turned, run.begin - 1, run.begin + 1)]
+    # A line that ends beyond the start of the next piece, or starts before the end of the last, is only shortened.
+    off_last = np.where((gap > MOVED) & (closing == 0.0), _off(inner, end, start), np.inf)
+    off_next = np.where((gap > MOVED) & (opening == 0.0), _off(outer, start, end), np.inf)
+    shorten_last, shorten_next = off_last <= MOVED, (off_next <= MOVED) & (off_last > MOVED)
+    gap = np.where(shorten_last, off_last, np.where(shorten_next, off_next, gap))
     bridged = gap > MOVED
-    to_arc = (gap > 0.0) & (closing == 0.0) & (opening != 0.0)
+    to_arc = (gap > 0.0) & (closing == 0.0) & (opening != 0.0) & ~shorten_next
     first_of_open = before == np.arange(len(before)) if not run.closed else np.zeros(len(before), dtype=np.bool_)
-    place = np.where((to_arc | bridged | first_of_open)[:, None], start, end)
+    place = np.where((to_arc | bridged | shorten_last | first_of_open)[:, None], start, end)
     return place, gap, bridged
+
+
+def _off(far: Array, near: Array, points: Array) -> Array:
+    """How far points, (S, 2) m, are from the lines that run from ``far`` to ``near``; infinite beyond their ends."""
+    chord, arm = near - far, points - far
+    length = np.maximum(np.hypot(*chord.T), 1e-300)
+    along = np.sum(arm * chord, axis=1) / length
+    off = np.abs(chord[:, 0] * arm[:, 1] - chord[:, 1] * arm[:, 0]) / length
+    return np.where((along > 0.0) & (along < length), off, np.inf)
 
 
 def _vertices(pack: Pack, run: _Run, counts: IntArray, start: IntArray) -> tuple[Array, Array]:

@@ -299,3 +299,16 @@ def test_specks_of_segments_are_dropped_and_arcs_stay_exact(shape: Curve, at: in
     assert len(clean.points) == len(shape.points)
     assert moved == pytest.approx(short, rel=1e-6)
     assert max(curves.nearest(clean, point)[2] for point in shape.points) <= short * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("turn", [False, True])
+@pytest.mark.parametrize("arc", [0.0, 0.4])
+def test_a_line_that_runs_past_the_start_is_shortened(turn: bool, arc: float) -> None:
+    over = segment((0.0, 8.0), (0.0, -0.15))
+    last = curves.reverse(over) if turn else over
+    bottom = Curve(MM * np.array([(0.0, 0.0), (9.0, 0.0)]), np.array([arc]), closed=False)
+    result = join(Pack.of([bottom, segment((9, 0), (9, 8)), segment((9, 8), (0, 8)), last]), joining=2e-4, name=str)
+    (loop,) = result.loops
+    assert len(loop.curve.points) == 4
+    assert loop.error == 0.0
+    assert {tuple(np.round(point / MM, 9)) for point in loop.curve.points} == {(0, 0), (9, 0), (9, 8), (0, 8)}
