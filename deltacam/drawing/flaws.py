@@ -89,6 +89,16 @@ def between(ends: Array, chain_of: Sequence[int], curve_of: Sequence[int], joini
     return limited(found)
 
 
+def joined(places: Array, apart: Array, curve_of: Sequence[int], name: Name) -> list[Finding]:
+    """The findings that ends were joined because the user allows it: (N, 2) m, how far apart, (N,) m, and a curve."""
+    return limited(
+        [
+            Finding(f"joined over {to_mm(size):.3g} mm as --join says", name(i), kind="joined", place=place(point))
+            for point, size, i in zip(places, apart.tolist(), curve_of, strict=True)
+        ]
+    )
+
+
 def copies(later_to_first: Mapping[int, int], found: Pack, name: Name) -> list[Finding]:
     """One finding per curve that others repeat."""
     groups: dict[int, list[int]] = {}

@@ -242,6 +242,7 @@ def _report(found: Pack, web: _Web, joined: Joined, joining: float, name: Name) 
         [flaws.gap(chain.gap, chain.curve.points[0], name(chain.members[0])) for chain in gaps]
     )
     joined.findings += flaws.between(*_free_ends(web), joining, name)
+    joined.findings += flaws.joined(*_wide_nodes(web), name)
     slivers = [chain for chain in joined.chains if chain.reason == NOTHING_INSIDE]
     joined.findings += flaws.slivers([(chain.curve.points[0], name(chain.members[0])) for chain in slivers])
     short = np.flatnonzero(found.lengths() < nodes.MOVED).tolist()
@@ -261,6 +262,18 @@ def _on_loops(joined: Joined, name: Name) -> list[Finding]:
             Finding(reason, where=name(chain.members[0]), kind="duplicate", place=flaws.place(chain.curve.points[0]))
         )
     return flaws.limited(found)
+
+
+def _wide_nodes(web: _Web) -> tuple[Array, Array, list[int]]:
+    """Nodes that join ends further apart than they are joined unasked: (N, 2) m, how far apart, (N,) m, and a curve."""
+    ends, node_of = web.strands.pack.ends().reshape(-1, 2), web.nodes.labels.reshape(-1)
+    low, high = np.full((len(web.nodes.places), 2), np.inf), np.full((len(web.nodes.places), 2), -np.inf)
+    np.minimum.at(low, node_of, ends)
+    np.maximum.at(high, node_of, ends)
+    apart = np.hypot(*(high - low).T)
+    wide = np.flatnonzero(apart > nodes.MOVED)
+    _, first = np.unique(node_of, return_index=True)
+    return low[wide], apart[wide], web.strands.owner[first[wide] // 2].tolist()
 
 
 def _free_ends(web: _Web) -> tuple[Array, list[int], list[int]]:
