@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import importlib
 import io
@@ -205,6 +206,20 @@ def test_the_constants_are_those_of_the_code() -> None:
         np.testing.assert_allclose(stated, value, rtol=1e-12, err_msg=f"{module}.{constant}")
     for mentioned in re.findall(r"`((?:drawing|cutting|motion|verification)\.[\w.]+)`", page):
         assert f"| `{mentioned}` |" in page, mentioned
+
+
+def test_every_kind_of_finding_is_explained() -> None:
+    page = (DOCS / "reference" / "inspection.md").read_text()
+    table = page[page.index("The kinds:") : page.index("## ledger")]
+    explained = set(re.findall(r"`(\w+)`", "".join(line.split("|")[1] for line in table.splitlines() if "| `" in line)))
+    used = set()
+    for path in (ROOT / "deltacam" / "drawing").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Finding":
+                given = [word.value for word in node.keywords if word.arg == "kind"] or node.args[3:4]
+                used |= {kind.value for kind in given if isinstance(kind, ast.Constant)}
+    assert used > {"units", "crossing", "lost"}
+    assert used <= explained
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "samples" / "README.md"], ids=name)
