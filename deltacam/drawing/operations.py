@@ -111,6 +111,15 @@ def check_patterns(selection: Selection, layers: Sequence[str]) -> None:
             raise DrawingError(what, where=option, hint=_names(layers, near))
 
 
+def left_out(layer: str, selection: Selection) -> str:
+    """Why the user leaves a layer out, in words; empty where that is not so."""
+    if selection.layers and not any(matches(pattern, layer) for pattern in selection.layers):
+        return f"layer {layer} is not among --layer"
+    if any(matches(pattern, layer) for pattern in selection.ignored_layers):
+        return f"layer {layer} is ignored by --ignore-layer"
+    return ""
+
+
 def matches(pattern: str, name: str) -> bool:
     """Whether ``name`` fits ``pattern``, in any case.
 
@@ -149,10 +158,9 @@ def _names(layers: Sequence[str], near: Sequence[str]) -> str:
 
 def _choose(layer: str, color: int, linetype: str, selection: Selection) -> Choice:
     """What is done with entities of this look."""
-    if selection.layers and not any(matches(pattern, layer) for pattern in selection.layers):
-        return _ignored(f"layer {layer} is not among --layer")
-    if any(matches(pattern, layer) for pattern in selection.ignored_layers):
-        return _ignored(f"layer {layer} is ignored by --ignore-layer")
+    reason = left_out(layer, selection)
+    if reason:
+        return _ignored(reason)
     for rule in selection.rules:
         if _applies(rule, layer, color, linetype):
             if rule.operation is Operation.IGNORE:

@@ -8,10 +8,11 @@ from typing import Final
 
 import numpy as np
 
+from deltacam.drawing import operations
 from deltacam.drawing.entities.walk import Drawn, Entity
 from deltacam.geometry import curve as curves
 from deltacam.geometry.pack import Pack
-from deltacam.model import Contour, Finding, Layer
+from deltacam.model import Contour, Finding, Layer, Selection
 from deltacam.units import to_mm
 
 _WORDS: Final = frozenset({"TEXT", "MTEXT", "DIMENSION", "LEADER", "MULTILEADER", "TOLERANCE", "ACAD_TABLE"})
@@ -40,10 +41,11 @@ _DOUBLE: Final = 0.3e-3
 """Contours nearer than this to the one around them, m, look like the edges of a thick line."""
 
 _MOST_DOUBLES: Final = 200
+_MOST_NAMED: Final = 8
 
 
-def hidden_layers(layers: Iterable[Layer]) -> list[Finding]:
-    """One finding per layer that is frozen or off and holds lines."""
+def hidden_layers(layers: Iterable[Layer], selection: Selection) -> list[Finding]:
+    """One finding per layer that is frozen or off and holds lines, unless the user leaves it out."""
     return [
         Finding(
             f"the layer is {layer.state}, but its {counted(layer.curves, 'curve')} read like all others",
@@ -52,8 +54,20 @@ def hidden_layers(layers: Iterable[Layer]) -> list[Finding]:
             kind="layer",
         )
         for layer in layers
-        if layer.state != "on" and layer.curves
+        if layer.state != "on" and layer.curves and not operations.left_out(layer.name, selection)
     ]
+
+
+def left_out(layers: Iterable[Layer], selection: Selection) -> list[Finding]:
+    """The finding that the user leaves layers out, with what they hold."""
+    those = [layer for layer in layers if operations.left_out(layer.name, selection)]
+    if not those:
+        return []
+    names = ", ".join(layer.name for layer in those[:_MOST_NAMED])
+    more = f" and {len(those) - _MOST_NAMED} more" if len(those) > _MOST_NAMED else ""
+    count = counted(sum(layer.entities for layer in those), "entity", "entities")
+    where = f"layer {names}{more}"
+    return [Finding(f"{count} left out as --layer and --ignore-layer say", where=where, kind="layer")]
 
 
 def not_cut(found: Drawn) -> list[Finding]:

@@ -193,6 +193,11 @@ def test_entities_on_frozen_layers_are_read_and_reported(reread: Any) -> None:
         ("the layer is off, but its 1 curve is read like all others", "layer Dark"),
         ("1 CIRCLE is not cut: marked as invisible", "layer 0, #33"),
     ]
+    left_out = reread(draw, selection=Selection(ignored_layers=("dark",)))
+    assert [finding.what for finding in left_out.findings if finding.kind == "layer"] == [
+        "1 entity is left out as --layer and --ignore-layer say",
+        "the layer is frozen, but its 1 curve is read like all others",
+    ]
     assert [(layer.name, layer.state, layer.curves) for layer in drawing.layers[:2]] == [
         ("Cold", "frozen", 1),
         ("Dark", "off", 1),
@@ -319,7 +324,9 @@ def test_layers_can_be_chosen(reread: Any, selection: Selection, machined: set[s
 def test_what_a_layer_leaves_out_is_not_called_open(reread: Any) -> None:
     drawing = reread(a_plate, selection=Selection(layers=("CUT",)))
     assert {contour.layer for contour in drawing.ignored} == {"BEND", "Engrave"}
-    assert drawing.findings == ()
+    (finding,) = drawing.findings
+    assert (finding.kind, finding.where) == ("layer", "layer BEND, Engrave")
+    assert finding.what == "3 entities are left out as --layer and --ignore-layer say"
 
 
 def test_an_outline_that_is_left_out_makes_no_holes(reread: Any) -> None:
