@@ -120,7 +120,7 @@ def _read(
 def _without_collection() -> Iterator[None]:
     """Leaves Python's search for garbage out while the objects of a drawing are made.
 
-    It looks at all of them again and again, and finds nothing: half of the time of a large drawing.
+    It looks at all of them again and again, and finds nothing: up to half of the time of a large drawing.
     """
     was_on = gc.isenabled()
     gc.disable()
