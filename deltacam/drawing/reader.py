@@ -29,6 +29,22 @@ _LARGE: Final = 10_000_000
 """Above so many bytes it pays to free the document before its curves are joined."""
 
 
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """Leaves Python's search for garbage out while the objects of a drawing are made.
+
+    It looks at all of them again and again, and finds nothing: up to half of the time of a large drawing.
+    """
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+@_without_collection()
 def read_drawing(
     path: str | Path,
     *,
@@ -55,19 +71,7 @@ def read_drawing(
             blocks: no unit, damaged or missing geometry, not flat, contours that cross, nothing to cut.
         DeltacamError: a unit that is not known, or a layer that the drawing does not have.
     """
-    with _without_collection():
-        return _read(Path(path), unit, metres_per_unit, default_unit, selection, strict)
-
-
-def _read(
-    path: Path,
-    unit: str | None,
-    metres_per_unit: float | None,
-    default_unit: str | None,
-    selection: Selection,
-    strict: bool,
-) -> Drawing:
-    """`read_drawing`, with its arguments."""
+    path = Path(path)
     data = document.read_bytes(path)
     loaded = document.load(data, path.name)
     source, lost, damage = loaded.document, loaded.lost, loaded.findings
@@ -114,21 +118,6 @@ def _read(
         extents=extents,
         selection=selection,
     )
-
-
-@contextmanager
-def _without_collection() -> Iterator[None]:
-    """Leaves Python's search for garbage out while the objects of a drawing are made.
-
-    It looks at all of them again and again, and finds nothing: up to half of the time of a large drawing.
-    """
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 def _extents(found: Drawn) -> tuple[float, float, float, float]:

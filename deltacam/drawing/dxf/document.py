@@ -12,7 +12,6 @@ import logging
 import re
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -25,7 +24,7 @@ from ezdxf.tools.codepage import toencoding
 from deltacam.drawing.dxf import census, formats, tags
 from deltacam.drawing.dxf.repair import Repaired, repair
 from deltacam.drawing.dxf.tags import Groups
-from deltacam.errors import DeltacamError, DrawingError
+from deltacam.errors import DrawingError
 from deltacam.model import Finding, LedgerEntry
 
 MAX_BYTES: Final = 256 * 2**20
@@ -131,17 +130,6 @@ def load(data: bytes, file: str) -> Loaded:
     except Exception as error:  # noqa: BLE001  # ezdxf raises whatever a damaged file makes it stumble over
         reason = _one_line(error)  # the error itself would keep all that was read so far in memory
     return _recover(groups, reason) or _tolerate(tags.split(_in_utf8(data)), file, reason)
-
-
-@contextmanager
-def translated(where: str, kind: type[Exception] = Exception) -> Iterator[None]:
-    """Turns the exceptions of a kind, by default whatever ezdxf raises, into a DrawingError at ``where``."""
-    try:
-        yield
-    except (DeltacamError, MemoryError):
-        raise
-    except kind as error:
-        raise DrawingError(f"the entity is damaged: {_one_line(error)}", where=where, hint=_SAVE_AGAIN) from error
 
 
 def _load_binary(data: bytes, file: str) -> Loaded:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from deltacam.drawing.joining.duplicates import SAME
-from deltacam.drawing.nesting import rings
+from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
 from deltacam.model import Curve
 

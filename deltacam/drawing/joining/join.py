@@ -14,7 +14,7 @@ from deltacam.drawing.flaws import Name, point_mm
 from deltacam.drawing.joining import along, chains, duplicates, nodes, overlaps, tangles, tidy
 from deltacam.drawing.joining.link import link
 from deltacam.drawing.joining.overlaps import Strands
-from deltacam.drawing.nesting import rings
+from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
 from deltacam.model import DEFAULT_JOINING, Array, Curve, Finding, IntArray, Outcome
 from deltacam.units import to_mm

@@ -11,7 +11,7 @@ from deltacam.drawing.joining import duplicates, near
 from deltacam.drawing.joining.duplicates import SAME
 from deltacam.drawing.joining.nodes import COINCIDENT
 from deltacam.drawing.joining.segments import Segments
-from deltacam.drawing.nesting import rings
+from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BoolArray, IntArray
 

@@ -12,7 +12,7 @@ from deltacam.drawing.joining.chains import Steps
 from deltacam.drawing.joining.link import link
 from deltacam.drawing.joining.nodes import Nodes
 from deltacam.drawing.joining.overlaps import Strands
-from deltacam.drawing.nesting import rings
+from deltacam.geometry import rings
 from deltacam.model import Array, Finding, IntArray
 
 _FLATNESS = 1e-6

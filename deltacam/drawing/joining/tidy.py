@@ -7,9 +7,9 @@ from typing import Final
 import numpy as np
 
 from deltacam.drawing.joining.nodes import MOVED
-from deltacam.drawing.nesting import rings
 from deltacam.drawing.nesting.outlines import is_mess
 from deltacam.geometry import curve as curves
+from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BoolArray, Curve, IntArray
 

@@ -20,9 +20,10 @@ import numpy as np
 
 from deltacam.drawing import flaws
 from deltacam.drawing.flaws import place
-from deltacam.drawing.nesting import crossings, rings
+from deltacam.drawing.nesting import crossings
 from deltacam.drawing.nesting.outlines import SAGITTA, Outlines, is_mess
 from deltacam.errors import DrawingError
+from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
 from deltacam.model import BoolArray, Contour, Curve, Finding, IntArray
 

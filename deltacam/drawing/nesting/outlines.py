@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from deltacam.drawing.nesting import rings
 from deltacam.drawing.nesting.pieces import Pieces
+from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
 from deltacam.model import Array, Curve, IntArray
 

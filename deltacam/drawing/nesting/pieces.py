@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from deltacam.drawing.nesting.rings import batches
+from deltacam.geometry.rings import batches
 from deltacam.model import Array, BoolArray, IntArray
 
 _LONGEST: Final = 8

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deltacam.drawing.nesting import rings
 from deltacam.geometry import curve as curves
+from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
 from deltacam.model import Curve
 from tests.strategies import star_curves
