@@ -160,11 +160,11 @@ def cut_length(comparison: Comparison) -> Check:
 def _length_slack(target: Target) -> float:
     """How much longer or shorter a curve at the distance d beside the path may be, in multiples of d.
 
-    That is 2 pi for a closed curve that does not cross itself. Each corner that is rounded within d makes it shorter by
-    less than 2 d.
+    That is 2 pi for a closed curve that does not cross itself. The shortest way past a corner within d of its tip is
+    straight; where the path turns by t, it is shorter by 2 d tan(t / 4).
     """
     corners = [sharp_corners(ring, closed=target.contour.curve.closed) for ring in target.rings]
-    return 2.0 * np.pi + 2.0 * sum(len(turn) for _, turn in corners)
+    return float(2.0 * np.pi + 2.0 * sum(np.tan(turn / 4.0).sum() for _, turn in corners))
 
 
 def _length(line: Array) -> float:
