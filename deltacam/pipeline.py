@@ -102,6 +102,7 @@ def plan(
     at: tuple[float, float] = (0.0, 0.0),
     rotation: float = 0.0,
     mode: Mode = Mode.CUT,
+    jobs: int | None = None,  # noqa: ARG001  # for the motion stage
     progress: Progress = _silent,
 ) -> Planned:
     """Plan a drawing and check the program independently.
@@ -116,6 +117,7 @@ def plan(
         at: where the centre of what is cut comes to lie, base frame, m.
         rotation: of the drawing about that centre, rad, counter-clockwise.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
+        jobs: how many processes plan the motion, >= 1; None takes as many as pay. The program is the same for any.
         progress: is told what is going on.
 
     Returns:
