@@ -18,7 +18,7 @@ class Check:
         name: in words, the same in every report.
         passed: whether the worst value is within the limit.
         worst: the worst value, in ``unit``; None where there was nothing to measure.
-        limit: what it may be at most (or at least, as the name says), in ``unit``.
+        limit: what it may be at most (or at least, as the name says), in ``unit``; None where there is none.
         unit: of both.
         tick: where the worst value is.
         where: the place, contour or joint in words.

@@ -18,6 +18,7 @@ OF_SETPOINTS: Final[tuple[Callable[[Evidence], Check], ...]] = (
     limits.joint_range,
     limits.joint_speed,
     limits.joint_acceleration,
+    limits.joint_jerk,
     laser.power_range,
     laser.laser_off,
     laser.laser_on,

@@ -156,7 +156,8 @@ def _checks(checks: Sequence[Check], rate: float) -> str:
     for check in sorted(checks, key=lambda check: check.passed):
         verdict = '<span class="ok">\u2713 passed</span>' if check.passed else '<span class="bad">\u2717 failed</span>'
         time = "" if check.tick is None else f"{check.tick / rate:.4f}"
-        numbers = (_number(check.worst), _number(check.limit), shown(check.unit), time)
+        limit = "no limit" if check.limit is None and check.worst is not None else _number(check.limit)
+        numbers = (_number(check.worst), limit, shown(check.unit), time)
         rows.append((shown(check.name), verdict, *numbers, shown(check.where)))
     heads = ("check", "verdict", "worst", "limit", "unit", "time, s", "where")
     return _table(heads, rows, numbers=(2, 3, 5), fold=False)

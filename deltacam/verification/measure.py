@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from deltacam.model import Array, BoolArray, Check, IntArray
+from deltacam.robot.robot import Triple
 from deltacam.verification.evidence import Evidence
 
 DIFFERENCES: Final = 1.001
@@ -23,7 +24,7 @@ def at_most(
     evidence: Evidence,
     name: str,
     values: Array,
-    limit: float,
+    limit: float | None,
     unit: str,
     *,
     ticks: IntArray | None = None,
@@ -35,7 +36,7 @@ def at_most(
         evidence: for the place of the worst value.
         name: of the check.
         values: (M,) in ``unit``; none at all passes.
-        limit: in ``unit``.
+        limit: in ``unit``; None where there is none, which any value keeps.
         unit: of both.
         ticks: the tick of every value, (M,); 0, 1, 2, ... by default.
         note: what the place starts with.
@@ -46,26 +47,27 @@ def at_most(
     tick = row if ticks is None else int(ticks[row])
     worst = float(values[row])
     where = ", ".join(part for part in (note, evidence.place(tick)) if part)
-    return Check(name, worst <= limit, worst, limit, unit, tick, where)
+    return Check(name, limit is None or worst <= limit, worst, limit, unit, tick, where)
 
 
 def per_joint(
-    evidence: Evidence, name: str, values: Array, limits: tuple[float, float, float], unit: str, *, ticks: IntArray
+    evidence: Evidence, name: str, values: Array, limits: Triple | None, unit: str, *, ticks: IntArray
 ) -> Check:
     """The check that no joint exceeds its limit; the joint that comes closest is reported.
 
     Args:
         evidence: for the place.
         name: of the check.
-        values: (M, 3) rad/s or rad/s2.
-        limits: per joint, in the same unit; `DIFFERENCES` is allowed on top.
+        values: (M, 3) rad/s, rad/s2 or rad/s3.
+        limits: per joint, in the same unit; `DIFFERENCES` is allowed on top. None where there are none: the largest
+            value of all is reported, and passes.
         unit: in degrees, for people.
         ticks: (M,).
     """
     if not len(values):
-        return Check(name, True, limit=float(np.degrees(min(limits)) * DIFFERENCES), unit=unit)
-    joint = int(np.argmax((values / limits).max(axis=0)))
-    limit = float(np.degrees(limits[joint]) * DIFFERENCES)
+        return Check(name, True, limit=float(np.degrees(min(limits)) * DIFFERENCES) if limits else None, unit=unit)
+    joint = int(np.argmax((values / limits if limits else values).max(axis=0)))
+    limit = float(np.degrees(limits[joint]) * DIFFERENCES) if limits else None
     return at_most(evidence, name, np.degrees(values[:, joint]), limit, unit, ticks=ticks, note=f"joint {joint + 1}")
 
 

@@ -97,7 +97,9 @@ def _aligned(checks: list[Check]) -> list[str]:
 def _values(check: Check) -> tuple[str, str]:
     """The worst value, and the limit with its unit; empty where there was nothing to measure."""
     worst = "" if check.worst is None else _number(check.worst)
-    return worst, "" if check.limit is None else f"/ {_number(check.limit)} {check.unit}".rstrip()
+    if check.limit is None:
+        return worst, f"{check.unit}, no limit" if worst else ""
+    return worst, f"/ {_number(check.limit)} {check.unit}".rstrip()
 
 
 def _number(value: float) -> str:

@@ -12,7 +12,14 @@ from deltacam.model import Array, BlockKind, Check, Drawing, Operation
 from deltacam.verification.evidence import KINDS, MOVING_KINDS, Evidence
 from deltacam.verification.measure import DIFFERENCES
 
-_SHARES: Final = ("joint speed", "joint acceleration", "tool speed", "tool acceleration", "feed while cutting")
+_SHARES: Final = (
+    "joint speed",
+    "joint acceleration",
+    "joint jerk",
+    "tool speed",
+    "tool acceleration",
+    "feed while cutting",
+)
 
 
 def summarize(evidence: Evidence, drawing: Drawing | None, checks: Sequence[Check]) -> dict[str, Any]:

@@ -206,7 +206,8 @@ def bench() -> Bench:
         engrave_feed=0.2,
         engrave_power=0.15,
     )
-    return Bench(robot=load_robot("delta-300"), process=process)
+    robot = load_robot("delta-300")
+    return Bench(robot=replace(robot, joints=replace(robot.joints, max_jerk=None)), process=process)
 
 
 @pytest.fixture(scope="session")

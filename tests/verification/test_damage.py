@@ -147,6 +147,10 @@ MUTATIONS: dict[str, tuple[Mutation, str]] = {
     ),
     "rapids too fast": (lambda c: c.bench.but(rapid_speed=3.0, rapid_acceleration=1e3).program(), "tool speed"),
     "rapids too hard for the joints": (lambda c: c.bench.but(rapid_acceleration=60.0).program(), "joint acceleration"),
+    "a jolt where the robot limits jerk": (
+        lambda c: c.bench.shifted(jerk_limited(c.program), first_row(c.program, BlockKind.RAPID), 10e-6),
+        "joint jerk",
+    ),
     "a start at speed": (lambda c: without_rows(c.program, slice(0, 20)), "rest at both ends"),
     "a start beside the park position": (lambda c: without_rows(c.program, slice(0, 20)), "park position"),
     "an end at speed": (lambda c: without_rows(c.program, slice(len(c.program.q) - 20, None)), "rest at both ends"),
@@ -223,6 +227,13 @@ def swapped_contours(program: Program) -> Program:
 def with_geometry(program: Program, **values: float) -> Program:
     robot = replace(program.robot, geometry=replace(program.robot.geometry, **values))
     return replace(program, robot=robot)
+
+
+def jerk_limited(program: Program) -> Program:
+    """The program on a robot that has just the limit of jerk that it needs."""
+    worst = np.abs(np.diff(program.q, n=3, axis=0)).max() * program.robot.controller.rate_hz**3
+    joints = replace(program.robot.joints, max_jerk=(float(worst),) * 3)
+    return replace(program, robot=replace(program.robot, joints=joints))
 
 
 def turned(program: Program, angle: float) -> Program:

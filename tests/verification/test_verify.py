@@ -72,6 +72,7 @@ def three_radians(value: float) -> tuple[float, float, float]:
 LIMITS: dict[str, Limit] = {
     "joint speed": Limit("joints", "max_speed", three_radians),
     "joint acceleration": Limit("joints", "max_acceleration", three_radians),
+    "joint jerk": Limit("joints", "max_jerk", three_radians),
     "tool speed": Limit("tool", "max_speed", float),
     "tool acceleration": Limit("tool", "max_acceleration", float),
     "pressure angle": Limit("workspace", "max_pressure_angle", np.radians),
