@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
 from deltacam.model import Block, Check, IntArray
 from deltacam.program.program import TICK_COLUMN, Program
+from deltacam.robot.robot import Triple
 from deltacam.verification.evidence import Evidence
 
 
@@ -28,10 +32,35 @@ def block_table(evidence: Evidence) -> Check:
 
 
 def robot(evidence: Evidence) -> Check:
-    """The program was made for the robot that it is checked against."""
-    same = evidence.program.robot.fingerprint == evidence.robot.fingerprint
-    words = f"made for {evidence.program.robot.name}, checked against {evidence.robot.name}, whose values differ"
-    return Check("robot", same, where="" if same else words)
+    """The program was made for the robot that it is checked against; only the limit of jerk may be another one.
+
+    A plan may have a limit of its own. Whether the program is within that of the robot is what the check of jerk says.
+    """
+    planned, given = evidence.program.robot, evidence.robot
+    if planned.fingerprint == given.fingerprint:
+        return Check("robot", True)
+    words = other_jerk_limit(evidence)
+    differ = f"made for {planned.name}, checked against {given.name}, whose values differ"
+    return Check("robot", bool(words), where=words or differ)
+
+
+def other_jerk_limit(evidence: Evidence) -> str:
+    """Both limits of jerk in words where they are all that differs between the two robots, else nothing."""
+    planned, given = evidence.program.robot, evidence.robot
+    limit = given.joints.max_jerk
+    alike = replace(planned, joints=replace(planned.joints, max_jerk=limit)).fingerprint == given.fingerprint
+    if planned.joints.max_jerk == limit or not alike:
+        return ""
+    limits = f"{_in_words(planned.joints.max_jerk)} in the program and {_in_words(limit)} in this robot"
+    return f"the limit of joint jerk is {limits}, which is the one checked"
+
+
+def _in_words(jerk: Triple | None) -> str:
+    """The limit in deg/s3, once where it is the same for all joints."""
+    if jerk is None:
+        return "none"
+    numbers = [f"{math.degrees(value):.9g}" for value in jerk]
+    return f"{', '.join(numbers[:1] if len(set(numbers)) == 1 else numbers)} deg/s3"
 
 
 def _first_disagreement(program: Program) -> tuple[int, str]:

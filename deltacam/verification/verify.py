@@ -8,6 +8,7 @@ from __future__ import annotations
 from deltacam.model import Check, Drawing, Finding, Mode, Report
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
+from deltacam.verification import file
 from deltacam.verification.checks import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
 from deltacam.verification.contours import compare, same_drawing
 from deltacam.verification.evidence import Evidence, gather
@@ -28,6 +29,9 @@ def verify(program: Program, *, drawing: Drawing | None, robot: Robot | None = N
     evidence = gather(program, robot or program.robot)
     checks = [check(evidence) for check in OF_SETPOINTS]
     findings = list(drawing.findings) if drawing else []
+    other_jerk = file.other_jerk_limit(evidence)
+    if other_jerk:
+        findings.append(Finding(other_jerk))
     if drawing:
         checks.append(same_drawing(program, drawing))
     if evidence.impossible[1]:
@@ -45,9 +49,9 @@ def _contour_checks(evidence: Evidence, drawing: Drawing | None, findings: list[
         findings.append(Finding("a frame program cuts nothing: its path was not compared with the drawing"))
         return []
     if drawing is None:
-        file = evidence.program.drawing.file
+        name = evidence.program.drawing.file
         what = "not checked without the drawing: deviation, completeness and order of the cuts"
-        findings.append(Finding(what, hint=f"give the drawing: --drawing {file}"))
+        findings.append(Finding(what, hint=f"give the drawing: --drawing {name}"))
         return []
     comparison = compare(evidence, drawing)
     return [check(comparison) for check in OF_CONTOURS]

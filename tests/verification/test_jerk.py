@@ -93,3 +93,43 @@ def test_with_a_limit_the_share_of_it_is_reported(bench: Bench, program: Program
     assert report.summary["share_of_limit"]["joint jerk"] == pytest.approx(0.5)
     assert "joint jerk 50 %" in to_text(report)
     assert ">no limit<" not in to_html(report, program, drawing=None, title="plate")
+
+
+ONE, TWO = "28647.8898 deg/s3", "57295.7795 deg/s3"
+
+
+@pytest.mark.parametrize(
+    ("planned", "own", "words"),
+    [
+        (500.0, 1e3, f"{ONE} in the program and {TWO} in this robot"),
+        (1e3, 500.0, f"{TWO} in the program and {ONE} in this robot"),
+        (None, 500.0, f"none in the program and {ONE} in this robot"),
+        (500.0, None, f"{ONE} in the program and none in this robot"),
+    ],
+)
+def test_a_plan_may_have_a_limit_of_its_own_but_is_checked_against_that_of_the_robot(
+    bench: Bench, program: Program, planned: float | None, own: float | None, words: str
+) -> None:
+    program = replace(program, robot=limited(program.robot, planned and (planned,) * 3))
+    found = np.radians(bench.check(verify(program, drawing=None), "joint jerk").worst)
+    assert 500.0 < found < 3e3
+    robot = limited(bench.robot, own and (own,) * 3)
+    report = verify(program, drawing=None, robot=robot)
+    assert bench.failed(report) == (set() if own is None or found < own else {"joint jerk"})
+    sentence = f"the limit of joint jerk is {words}, which is the one checked"
+    assert bench.check(report, "robot").where == sentence
+    assert f"note: {sentence}\n" in to_text(report)
+
+
+def test_limits_that_differ_by_joint_are_all_named(bench: Bench, program: Program) -> None:
+    robot = limited(bench.robot, tuple(np.radians((1e6, 1e6, 2e6)).tolist()))
+    report = verify(program, drawing=None, robot=robot)
+    assert "none in the program and 1000000, 1000000, 2000000 deg/s3 in" in bench.check(report, "robot").where
+
+
+def test_another_limit_of_jerk_does_not_hide_that_the_robot_is_another_one(bench: Bench, program: Program) -> None:
+    slower = replace(bench.robot, tool=replace(bench.robot.tool, max_speed=0.99))
+    report = verify(program, drawing=None, robot=limited(slower, (1e6,) * 3))
+    assert bench.failed(report) == {"robot"}
+    assert bench.check(report, "robot").where.endswith("whose values differ")
+    assert "limit of joint jerk" not in to_text(report)
