@@ -147,6 +147,22 @@ def parse_angle(text: str) -> float:
     return value if unit == "rad" else math.radians(value)
 
 
+def parse_jerk(text: str) -> float | None:
+    """The jerk of a joint in rad/s^3 that ``text`` states: ``200000``, ``3500rad/s3``; None for ``none``.
+
+    A bare number is deg/s3.
+
+    Raises:
+        DeltacamError: neither ``none`` nor a finite number, or an unknown unit.
+    """
+    if text.strip().lower() == "none":
+        return None
+    value, unit = _split(text, "jerk", "200000, 3500rad/s3 or none")
+    if unit not in ("", "deg/s3", "rad/s3"):
+        raise DeltacamError(f"unknown unit of jerk {unit!r}", hint="use deg/s3 or rad/s3")
+    return value if unit == "rad/s3" else math.radians(value)
+
+
 def _split(text: str, kind: str, example: str) -> tuple[float, str]:
     match = _NUMBER.fullmatch(text)
     value = float(match.group(1)) if match else math.nan

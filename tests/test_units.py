@@ -1,11 +1,13 @@
 """Units that people write, and the units that a drawing may be in."""
 
+import math
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from deltacam.errors import DeltacamError
-from deltacam.units import METRES_PER, likely_units, metres_per, parse_length, parse_speed
+from deltacam.units import METRES_PER, likely_units, metres_per, parse_jerk, parse_length, parse_speed
 
 
 @pytest.mark.parametrize(
@@ -39,6 +41,27 @@ def test_what_is_no_length_is_refused_with_an_example(text: str) -> None:
 def test_every_unit_has_a_speed() -> None:
     for unit, metres in METRES_PER.items():
         assert parse_speed(f"3{unit}/min") == pytest.approx(3 * metres / 60)
+
+
+@pytest.mark.parametrize(
+    ("text", "jerk"),
+    [
+        ("180000", math.pi * 1e3),
+        (" 1.8e5 deg/s3 ", math.pi * 1e3),
+        ("3500rad/s3", 3500.0),
+        ("none", None),
+        (" None ", None),
+    ],
+)
+def test_a_jerk_is_in_degrees_unless_it_states_another_unit(text: str, jerk: float | None) -> None:
+    assert parse_jerk(text) == (None if jerk is None else pytest.approx(jerk, rel=1e-15))
+
+
+@pytest.mark.parametrize("text", ["", "no", "nan", "inf", "deg/s3", "1e999", "5 deg/s2", "5 mm/s3", "5 rad", "1,5"])
+def test_what_is_no_jerk_is_refused_with_an_example_or_the_units(text: str) -> None:
+    with pytest.raises(DeltacamError, match="jerk") as caught:
+        parse_jerk(text)
+    assert "rad/s3" in caught.value.hint
 
 
 def test_a_unit_is_known_in_any_case_and_an_unknown_one_lists_them_all() -> None:

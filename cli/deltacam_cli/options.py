@@ -6,19 +6,22 @@ a hint, in JSON where that is asked for, and after the program of an earlier run
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from deltacam.errors import DeltacamError
-from deltacam.units import METRES_PER, metres_per, parse_angle, parse_length, parse_speed, to_mm
+from deltacam.units import METRES_PER, metres_per, parse_angle, parse_jerk, parse_length, parse_speed, to_mm
 from deltacam_cli.main import LONGEST_MESSAGE
 
 if TYPE_CHECKING:
     from deltacam.defaults import Defaults
     from deltacam.model import Selection
+    from deltacam.robot.robot import Robot
 
 T = TypeVar("T")
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -144,6 +147,29 @@ def angle(option: str, text: str) -> float:
         DeltacamError: it is not an angle; names the option.
     """
     return _read(option, text, parse_angle) or 0.0
+
+
+def with_jerk(robot: Robot, text: str | None) -> Robot:
+    """The robot with the limit of joint jerk that the command line gives to all joints, or with its own.
+
+    Says on stderr where that is looser than its own.
+
+    Raises:
+        DeltacamError: it is not a jerk, or out of range; names the option.
+    """
+    from deltacam.robot.bounds import BOUNDS
+
+    if text is None:
+        return robot
+    jerk, bound = _read("--jerk", text, parse_jerk), BOUNDS["max_jerk"]
+    if jerk is not None and not bound.to_si(bound.minimum) <= jerk <= bound.to_si(bound.maximum):
+        hint = f"it must be from {bound.minimum:g} to {bound.maximum:g} deg/s3, or none"
+        raise DeltacamError(f"{math.degrees(jerk):.6g} deg/s3 is out of range", where="--jerk", hint=hint)
+    own = robot.joints.max_jerk
+    if own and (jerk is None or jerk > min(own)):
+        what = "note: --jerk is looser than the robot's own limit; `deltacam verify --robot` checks against that"
+        click.echo(what, err=True)
+    return replace(robot, joints=replace(robot.joints, max_jerk=None if jerk is None else (jerk, jerk, jerk)))
 
 
 def unit(option: str, text: str | None) -> str | None:

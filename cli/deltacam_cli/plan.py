@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 @click.option("--feed", metavar="SPEED", help="Cutting speed, mm/s unless a unit is given (12m/min).")
 @click.option("--tolerance", metavar="LENGTH", help="Largest deviation from the kerf path, mm unless a unit is given.")
 @click.option("--corner", type=click.Choice(["round", "stop"]), help="Round corners within the tolerance, or stop.")
+@click.option("--jerk", metavar="JERK", help="Largest joint jerk, deg/s3 (or 3500rad/s3), or none; else the robot's.")
 @click.option("--at", metavar="X,Y", default="0,0", show_default=True, help="Where the part's centre goes, mm.")
 @click.option("--rotate", metavar="ANGLE", default="0", show_default=True, help="Turn the part by so many degrees.")
 @click.option("--dry-run", is_flag=True, help="The same motion with the laser off.")
@@ -69,6 +70,7 @@ def _settings(
     own: Defaults,
     *,
     robot: str | None,
+    jerk: str | None,
     process: str | None,
     units: str | None,
     layers: tuple[str, ...],
@@ -82,7 +84,7 @@ def _settings(
     """What the command line and the user's own defaults say, as the pipeline takes it."""
     selection = options.selection(own, layers=layers, ignored_layers=ignored_layers, join=join, accept_loss=accept_loss)
     return {
-        "robot": _robot(robot, own),
+        "robot": options.with_jerk(_robot(robot, own), jerk),
         "process": _process(process, own, **single_values),
         "unit": options.unit("--units", units),
         "default_unit": own.units,

@@ -1,11 +1,14 @@
 """``deltacam plan``: units, the user's own defaults, and how a drawing is to be read."""
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 import ezdxf
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -14,6 +17,7 @@ from deltacam.cutting.process import DEFAULT_PROCESS
 from deltacam.defaults import Defaults
 from deltacam.errors import DeltacamError
 from deltacam.model import DEFAULT_JOINING, Selection
+from deltacam.robot.reader import load_robot
 from deltacam.units import METRES_PER
 from deltacam_cli import options
 from deltacam_cli.plan import command
@@ -88,6 +92,52 @@ def test_the_folder_for_settings_is_looked_at_after_the_current_one(
     (tmp_path / "deltacam.toml").write_text('robot = "delta-300"\n')
     assert run() == "note: defaults from deltacam.toml\n"
     assert [asked["default_unit"] for asked in planned] == ["in", None]
+
+
+def robot_file(folder: Path, jerk: str) -> str:
+    """A robot file with that line for the limit of jerk."""
+    text = (DXF.parents[2] / "samples" / "robot.toml").read_text()
+    changed = re.sub(r"^# max_jerk_deg_s3 = .*$", jerk, text, flags=re.MULTILINE)
+    assert changed != text
+    (folder / "robot.toml").write_text(changed)
+    return "robot.toml"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "limits"),
+    [
+        ([], (1e5, 1e5, 2e5)),
+        (["--jerk", "50000"], (5e4,) * 3),
+        (["--jerk", f"{np.radians(1e5)}rad/s3"], (1e5,) * 3),
+        (["--jerk", "100001"], (100_001.0,) * 3),
+        (["--jerk", "none"], None),
+        (["--jerk", "0.001"], (1e-3,) * 3),
+        (["--jerk", "1e12"], (1e12,) * 3),
+    ],
+)
+def test_a_limit_of_jerk_replaces_that_of_the_robot_and_a_looser_one_is_said(
+    planned: list[dict[str, Any]], tmp_path: Path, arguments: list[str], limits: tuple[float, ...] | None
+) -> None:
+    said = run("--robot", robot_file(tmp_path, "max_jerk_deg_s3 = [100000, 100000, 200000]"), *arguments)
+    robot, own = planned[0]["robot"], load_robot("robot.toml")
+    assert robot.joints.max_jerk == (None if limits is None else pytest.approx(np.radians(limits)))
+    assert robot == replace(own, joints=replace(own.joints, max_jerk=robot.joints.max_jerk))
+    assert robot.joints.derived == own.joints.derived
+    assert said.startswith("note: --jerk is looser than") is (limits is None or limits[0] > 1e5)
+    assert said.count("\n") <= 1
+
+
+def test_nothing_is_looser_than_no_limit_of_jerk(planned: list[dict[str, Any]], tmp_path: Path) -> None:
+    for value in ("5000", "none"):
+        assert run("--robot", robot_file(tmp_path, ""), "--jerk", value) == ""
+
+
+@pytest.mark.parametrize("value", ["0", "-5", "0.0009", "1.1e12", "0.00001rad/s3"])
+def test_a_limit_of_jerk_out_of_range_is_refused(value: str) -> None:
+    with pytest.raises(DeltacamError, match="deg/s3 is out of range") as caught:
+        options.with_jerk(load_robot("delta-300"), value)
+    assert caught.value.where == "--jerk"
+    assert caught.value.hint == "it must be from 0.001 to 1e+12 deg/s3, or none"
 
 
 @pytest.mark.parametrize("value", ["0", "-0.1", "0.0001", "5.1", "1in"])
