@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from deltacam.pipeline import Outputs, Planned
     from deltacam.robot.robot import Robot
 
+JOBS = click.IntRange(0, 64)
+
 
 @click.command("plan", no_args_is_help=True)
 @click.argument("drawing", type=click.Path(path_type=Path))
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
 @click.option("--rotate", metavar="ANGLE", default="0", show_default=True, help="Turn the part by so many degrees.")
 @click.option("--dry-run", is_flag=True, help="The same motion with the laser off.")
 @click.option("--frame", is_flag=True, help="Only trace the bounding box, with the laser off.")
+@click.option("--jobs", type=JOBS, help="Processes for planning; the result is the same. 0: as many as pay.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the summary.")
 def command(drawing: Path, folder: Path, *, dry_run: bool, frame: bool, as_json: bool, **values: Any) -> None:
     """Plan DRAWING (a DXF file) and verify the program.
@@ -79,6 +82,7 @@ def _settings(
     accept_loss: bool,
     at: str,
     rotate: str,
+    jobs: int | None,
     **single_values: str | None,
 ) -> dict[str, Any]:
     """What the command line and the user's own defaults say, as the pipeline takes it."""
@@ -91,6 +95,7 @@ def _settings(
         "selection": selection,
         "at": options.place("--at", at),
         "rotation": options.angle("--rotate", rotate),
+        "jobs": jobs or None,
     }
 
 

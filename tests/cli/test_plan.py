@@ -140,6 +140,21 @@ def test_a_limit_of_jerk_out_of_range_is_refused(value: str) -> None:
     assert caught.value.hint == "it must be from 0.001 to 1e+12 deg/s3, or none"
 
 
+@pytest.mark.parametrize(("arguments", "jobs"), [([], None), (["--jobs", "0"], None), (["--jobs", "3"], 3)])
+def test_the_number_of_processes_is_passed_on(
+    planned: list[dict[str, Any]], arguments: list[str], jobs: int | None
+) -> None:
+    run(*arguments)
+    assert planned[0]["jobs"] == jobs
+
+
+@pytest.mark.parametrize("number", ["-1", "65", "two"])
+def test_a_number_of_processes_out_of_range_is_refused(number: str) -> None:
+    result = CliRunner().invoke(command, ["part.dxf", "--jobs", number])
+    assert result.exit_code == 2
+    assert "--jobs" in result.stderr
+
+
 @pytest.mark.parametrize("value", ["0", "-0.1", "0.0001", "5.1", "1in"])
 def test_a_joining_distance_out_of_range_is_refused(value: str) -> None:
     with pytest.raises(DeltacamError, match="out of range") as caught:
