@@ -8,18 +8,19 @@ from the nearest neighbour, improved as `improve` says.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import shapely
 
-from deltacam.cutting.improve import GAIN, Precedence, Tour, improve
-from deltacam.geometry import curve as curves
-from deltacam.model import Array, Cut, IntArray, Operation
+from deltacam.cutting.beginnings import Beginnings, Place
+from deltacam.cutting.improve import Tour, improve
+from deltacam.cutting.neighbour import nearest_neighbour
+from deltacam.cutting.precedence import Precedence
+from deltacam.model import Cut, IntArray, Operation
 
-_FLATTENING: Final = 1e-4
 _ROUNDS: Final = 20
+_WORTH: Final = 2e-4  # of the travel; a round that saves less is not worth another one
 _STAGES: Final = 3
 
 
@@ -56,81 +57,50 @@ def _order(
     """The cuts of one stage in order, from ``start`` and then on to ``home``."""
     if not cuts:
         return ()
-    rule = Precedence.between(cuts, parents)
-    sequence = _nearest_neighbour(cuts, rule, start)
-    best = _walk(cuts, sequence, start)
-    best_travel = _travel(best, start, home)
+    rule, beginnings = Precedence.between(cuts, parents), Beginnings(cuts)
+    best = _Walk.along(beginnings, nearest_neighbour(beginnings, rule, start), start, home)
+    moved = None
     for _ in range(_ROUNDS):
-        improved = improve(_tour(best, sequence, start, home), rule)
-        if np.array_equal(improved, sequence):
-            break
-        walked = _walk(cuts, improved, start)
-        travel = _travel(walked, start, home)
-        if travel >= best_travel - GAIN:
-            break
-        sequence, best, best_travel = improved, walked, travel
-    return best
+        tour = best.tour()
+        walk = _Walk.along(beginnings, improve(tour, rule, moved), start, home)
+        saved, everywhere = best.travel - walk.travel, moved is None
+        if saved > 0.0:
+            best, moved = walk, walk.tour().differs(tour)
+        if saved <= _WORTH * best.travel:
+            if everywhere:
+                break
+            moved = None
+    return tuple(
+        beginnings.begun(index, place) for index, place in zip(best.sequence.tolist(), best.places, strict=True)
+    )
 
 
-def _nearest_neighbour(cuts: Sequence[Cut], rule: Precedence, start: tuple[float, float]) -> IntArray:
-    lines = np.array([_beginnings(cut) for cut in cuts])
-    waiting = np.array([len(inside) for inside in rule.before])
-    ready = waiting == 0
-    place = np.array(start)
-    sequence = []
-    for _ in cuts:
-        choices = np.flatnonzero(ready)
-        chosen = int(choices[np.argmin(shapely.distance(lines[choices], shapely.Point(place)))])
-        sequence.append(chosen)
-        ready[chosen] = False
-        for around in rule.after[chosen]:
-            waiting[around] -= 1
-            ready[around] = waiting[around] == 0
-        place = _begun_near(cuts[chosen], place).curve.ends[-1]
-    return np.array(sequence)
+@dataclass(frozen=True, slots=True, eq=False)
+class _Walk:
+    """Cuts in ``sequence``, each begun at that of its ``places`` that is nearest to the end of the one before."""
 
+    sequence: IntArray
+    places: list[Place]
+    start: tuple[float, float]
+    home: tuple[float, float]
 
-def _beginnings(cut: Cut) -> shapely.Geometry:
-    """Where a cut may begin: anywhere on a closed one, at the ends of an open one."""
-    if not cut.curve.closed:
-        return shapely.MultiPoint(cut.curve.points[[0, -1]])
-    points, _ = curves.flatten(cut.curve, _FLATTENING)
-    return shapely.LineString(np.concatenate([points, points[:1]]))
+    @classmethod
+    def along(
+        cls, beginnings: Beginnings, sequence: IntArray, start: tuple[float, float], home: tuple[float, float]
+    ) -> _Walk:
+        return cls(sequence, beginnings.walk(sequence, start), start, home)
 
+    def tour(self) -> Tour:
+        back = np.argsort(self.sequence)
+        begins = np.array([place.begin for place in self.places])[back]
+        ends = np.array([place.end for place in self.places])[back]
+        return Tour(self.sequence.copy(), begins, ends, np.array(self.start), np.array(self.home))
 
-def _begun_near(cut: Cut, place: Array) -> Cut:
-    """The cut, begun where it may begin nearest to ``place``, (2,) m."""
-    if not cut.curve.closed:
-        first, last = np.hypot(*(cut.curve.points[[0, -1]] - place).T)
-        return replace(cut, curve=curves.reverse(cut.curve)) if last < first else cut
-    segment, distance, _ = curves.nearest(cut.curve, place)
-    return replace(cut, curve=curves.start_at(cut.curve, segment, distance))
+    @property
+    def travel(self) -> float:
+        return self.tour().travel()
 
 
 def _end(cut: Cut) -> tuple[float, float]:
     x, y = cut.curve.ends[-1]
     return float(x), float(y)
-
-
-def _walk(cuts: Sequence[Cut], sequence: IntArray, start: tuple[float, float]) -> tuple[Cut, ...]:
-    """The cuts in sequence, each begun nearest to the end of the one before."""
-    place = np.array(start)
-    walked = []
-    for index in sequence:
-        walked.append(_begun_near(cuts[index], place))
-        place = walked[-1].curve.ends[-1]
-    return tuple(walked)
-
-
-def _travel(cuts: Sequence[Cut], start: tuple[float, float], home: tuple[float, float]) -> float:
-    begins = np.array([*(cut.curve.points[0] for cut in cuts), home])
-    ends = np.array([start, *(cut.curve.ends[-1] for cut in cuts)])
-    return float(np.hypot(*(begins - ends).T).sum())
-
-
-def _tour(walked: Sequence[Cut], sequence: IntArray, start: tuple[float, float], home: tuple[float, float]) -> Tour:
-    """Where the walked cuts begin and end, by the index of each."""
-    back = np.argsort(sequence)
-    begins = np.array([cut.curve.points[0] for cut in walked])[back]
-    ends = np.array([cut.curve.ends[-1] for cut in walked])[back]
-    return Tour(sequence, begins, ends, np.array(start), np.array(home))

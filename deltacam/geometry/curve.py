@@ -236,13 +236,19 @@ def start_at(curve: Curve, segment: int, distance: float) -> Curve:
 
     A start within 1 nm of a vertex becomes that vertex.
     """
-    reach = float(lengths(curve)[segment])
+    start, bulge = curve.points[segment], float(curve.bulges[segment])
+    step = curve.points[(segment + 1) % len(curve.points)] - start
+    turn, chord = 4.0 * np.arctan(bulge), np.hypot(*step)
+    reach = float(chord / np.sinc(0.5 * turn / np.pi))
     if distance <= 1e-9 or reach - distance <= 1e-9:
         first = segment if distance <= 1e-9 else (segment + 1) % len(curve.points)
         return replace(curve, points=np.roll(curve.points, -first, axis=0), bulges=np.roll(curve.bulges, -first))
-    place, _ = evaluate(curve, np.array([segment]), np.array([distance]))
-    quarter = np.arctan(curve.bulges[segment])
+    quarter = 0.25 * turn
     share = distance / reach
+    # The chord to a point of the arc that has turned by b leaves the whole chord by (turn - b) / 2 to the right.
+    part = chord * share if turn == 0.0 else chord * np.sin(0.5 * share * turn) / np.sin(0.5 * turn)
+    way = np.arctan2(step[1], step[0]) + 0.5 * (share - 1.0) * turn
+    place = start[None] + part * np.array([[np.cos(way), np.sin(way)]])
     points = np.concatenate([place, np.roll(curve.points, -(segment + 1), axis=0)])
     rest = np.roll(curve.bulges, -segment)[1:]
     bulges = np.concatenate([[np.tan(quarter * (1.0 - share))], rest, [np.tan(quarter * share)]])
