@@ -52,10 +52,18 @@ def _figures(summary: Mapping[str, Any]) -> list[str]:
     derived = " (joint limits derived from the tool rating)" if summary.get("derived_joint_limits") else ""
     lines.append(f"  robot    {plain(summary['robot'])}{derived}; {plain(summary['process'])}, {process}")
     if summary["share_of_limit"]:
-        used = summary["share_of_limit"].items()
-        shares = ", ".join(f"{name.removesuffix(' while cutting')} {100 * share:.0f} %" for name, share in used)
-        lines.append(f"  of limit {shares}")
+        lines.append(f"  of limit {_shares(summary['share_of_limit'])}")
     return lines
+
+
+def _shares(used: Mapping[str, float]) -> str:
+    """The share of every limit, those of the joints, of the tool and of the process together."""
+    groups: dict[str, list[str]] = {}
+    for name, share in used.items():
+        whose, _, what = name.removesuffix(" while cutting").partition(" ")
+        group = groups.setdefault(whose, [])
+        group.append(f"{what if group else f'{whose} {what}'.rstrip()} {100 * share:.0f} %")
+    return "; ".join(map(", ".join, groups.values()))
 
 
 def _drawing(summary: Mapping[str, Any]) -> list[str]:
@@ -104,7 +112,7 @@ def _values(check: Check) -> tuple[str, str]:
 
 def _number(value: float) -> str:
     """Four significant digits, without an exponent where people would not write one."""
-    if value == 0.0 or 1e-3 <= abs(value) < 1e6:
+    if value == 0.0 or 1e-3 <= abs(value) < 1e9:
         digits = f"{value:.4g}"
         return digits if "e" not in digits else f"{value:.0f}"
     return f"{value:.1e}"

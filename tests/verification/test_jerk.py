@@ -1,6 +1,7 @@
 """The jerk of the joints: measured as it is, with the ends, and whether or not the robot has a limit."""
 
 import json
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -91,7 +92,9 @@ def test_with_a_limit_the_share_of_it_is_reported(bench: Bench, program: Program
     robot = limited(program.robot, (2.0 * float(np.radians(free.worst)),) * 3)
     report = verify(replace(program, robot=robot), drawing=bench.drawing)
     assert report.summary["share_of_limit"]["joint jerk"] == pytest.approx(0.5)
-    assert "joint jerk 50 %" in to_text(report)
+    shares = "joint speed .+ %, acceleration .+ %, jerk 50 %; tool speed .+ %, acceleration .+ %; feed 100 %\n"
+    assert re.search(f"  of limit {shares}", to_text(report))
+    assert max(map(len, to_text(report).splitlines())) <= 120
     assert ">no limit<" not in to_html(report, program, drawing=None, title="plate")
 
 

@@ -73,6 +73,15 @@ def test_the_text_of_a_program_without_cuts_or_positions_is_whole(bench: Bench, 
     assert "note: the arms cannot close" in text
 
 
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [(1_600_400.4, "1600400"), (99_999.96, "100000"), (14.0, "14"), (0.0, "0"), (1.4e-7, "1.4e-07"), (1e12, "1.0e+12")],
+)
+def test_a_number_has_an_exponent_only_where_people_would_write_one(program: Program, value: float, shown: str) -> None:
+    text = to_text(replace(verify(program, drawing=None), checks=(Check("some", True, value, value, "um"),)))
+    assert f"  ok  some  {shown} / {shown} um\n" in text
+
+
 def test_many_findings_do_not_fill_the_screen(program: Program) -> None:
     report = replace(verify(program, drawing=None), findings=tuple(Finding(f"thing {n}") for n in range(100)))
     text = to_text(report)
