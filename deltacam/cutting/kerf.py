@@ -13,11 +13,15 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 import shapely
 
+from deltacam.cutting.convex import offset_convex
 from deltacam.cutting.trace import Source, trace_ring
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
+from deltacam.geometry import rings
+from deltacam.geometry.pack import Pack
 from deltacam.model import Array, Contour, Curve, Cut, Finding, Operation
 from deltacam.units import to_mm
 
@@ -72,6 +76,9 @@ def _offset_one(contour: Contour, kerf: float) -> KerfResult:
     if kerf == 0.0 or not contour.has_kerf:
         return KerfResult((_cut(contour, contour.curve),), ())
     shift = -kerf / 2.0 if contour.is_hole else kerf / 2.0
+    convex = offset_convex(contour.curve, shift)
+    if convex is not None and curves.length(convex) > SMALLEST_RING:
+        return KerfResult((_cut(contour, convex),), ())
     points, segment = curves.flatten(contour.curve, FLATTENING)
     region = shapely.Polygon(points if len(points) >= 3 else None).buffer(shift, quad_segs=_quad_segments(kerf / 2.0))
     pieces = [piece for piece in getattr(region, "geoms", [region]) if not piece.is_empty]
@@ -131,8 +138,8 @@ def _refuse_collisions(contours: Sequence[Contour], cuts: Sequence[Cut], kerf: f
     clearance = kerf / 2.0 - CLEARANCE_SLACK
     if clearance <= 0.0 or len(contours) < 2:
         return
-    drawn = np.array([_outline(contour.curve) for contour in contours])
-    paths = np.array([_outline(cut.curve) for cut in cuts])
+    drawn = _outlines([contour.curve for contour in contours])
+    paths = _outlines([cut.curve for cut in cuts])
     path, other = shapely.STRtree(drawn).query(paths, predicate="dwithin", distance=clearance)
     numbers = np.array([contour.number for contour in contours])
     hit = numbers[other] != np.array([cut.contour for cut in cuts])[path]
@@ -154,8 +161,8 @@ def _meeting_edges(slots: Sequence[Contour], closed: Sequence[Contour], kerf: fl
     """One finding for all open lines that are cut within half a kerf of a closed contour: they open its edge there."""
     if not slots or not closed:
         return ()
-    drawn = np.array([_outline(contour.curve) for contour in closed])
-    lines = np.array([_outline(contour.curve) for contour in slots])
+    drawn = _outlines([contour.curve for contour in closed])
+    lines = _outlines([contour.curve for contour in slots])
     slot, edge = shapely.STRtree(drawn).query(lines, predicate="dwithin", distance=kerf / 2.0)
     if not len(slot):
         return ()
@@ -174,9 +181,14 @@ def _meeting_edges(slots: Sequence[Contour], closed: Sequence[Contour], kerf: fl
     )
 
 
-def _outline(curve: Curve) -> shapely.LineString:
-    points, _ = curves.flatten(curve, FLATTENING)
-    return shapely.LineString(np.concatenate([points, points[:1]]) if curve.closed else points)
+def _outlines(lines: Sequence[Curve]) -> npt.NDArray[np.object_]:
+    """Each curve as a line string, flattened."""
+    pack = Pack.of(lines)
+    points, owner = rings.flatten(pack, FLATTENING)
+    first = np.searchsorted(owner, np.flatnonzero(pack.closed))
+    last = np.searchsorted(owner, np.flatnonzero(pack.closed), side="right")  # where the first point comes once more
+    points, owner = np.insert(points, last, points[first], axis=0), np.insert(owner, last, owner[first])
+    return np.asarray(shapely.linestrings(points, indices=owner))
 
 
 def _place(point: Array) -> str:

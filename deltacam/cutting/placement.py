@@ -9,7 +9,9 @@ import numpy as np
 
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Contour, Cut, Operation, Placement
+from deltacam.geometry import rings
+from deltacam.geometry.pack import Pack
+from deltacam.model import Array, Contour, Cut, IntArray, Operation, Placement
 from deltacam.units import METRES_PER, likely_units, to_mm
 
 if TYPE_CHECKING:
@@ -21,7 +23,7 @@ _OUTSIDE: Final = 1e-7
 
 def bounding_box(contours: Sequence[Contour] | Sequence[Cut]) -> Array:
     """The smallest x and y, and the largest, of all the curves, (2, 2) m."""
-    boxes = np.array([curves.bounds(contour.curve) for contour in contours])
+    boxes = Pack.of(contour.curve for contour in contours).bounds()
     return np.array([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
 
 
@@ -56,13 +58,13 @@ def refuse_outside(
     Raises:
         InfeasibleError: the worst contour is outside; says by how much, and in which unit it would fit.
     """
-    placed = [_placed(cut, placement) for cut in cuts]
-    excess = [float(robot.workspace.excess(points).max()) for points in placed]
+    points, owner = _placed(cuts, placement)
+    excess = np.maximum.reduceat(robot.workspace.excess(points), np.searchsorted(owner, np.arange(len(cuts))))
     worst = int(np.argmax(excess))
     if excess[worst] <= _OUTSIDE:
         return
     cut = cuts[worst]
-    count = sum(one > _OUTSIDE for one in excess)
+    count = int((excess > _OUTSIDE).sum())
     low, high = bounding_box(cuts)
     width, depth = to_mm(high[0] - low[0]), to_mm(high[1] - low[1])
     subject = "the cut" if cut.operation is Operation.CUT else "what is engraved"
@@ -72,16 +74,17 @@ def refuse_outside(
         where=cut.where,
         hint=f"with its kerf the part is {width:.1f} x {depth:.1f} mm, one unit of the drawing taken as {unit}: "
         + (
-            _fitting_unit(np.concatenate(placed), robot, (high - low) / metres_per_unit, metres_per_unit)
+            _fitting_unit(points, robot, (high - low) / metres_per_unit, metres_per_unit)
             or "move it (--at), turn it (--rotate), take a larger robot (--robot), or check the unit (--units)"
         ),
     )
 
 
-def _placed(cut: Cut, placement: Placement) -> Array:
-    """Points (N, 2) m along the cut, base frame."""
-    curve = curves.transform(cut.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
-    return curves.flatten(curve, _FLATTENING)[0]
+def _placed(cuts: Sequence[Cut], placement: Placement) -> tuple[Array, IntArray]:
+    """Points (N, 2) m along the cuts, base frame, and the index of the cut that each is on, (N,)."""
+    points, owner = rings.flatten(Pack.of(cut.curve for cut in cuts), _FLATTENING)
+    cos, sin = np.cos(placement.rotation), np.sin(placement.rotation)
+    return points @ np.array([[cos, sin], [-sin, cos]]) + (placement.x, placement.y), owner
 
 
 def _fitting_unit(points: Array, robot: Robot, drawn: Array, metres_per_unit: float) -> str:

@@ -21,9 +21,13 @@ from deltacam.model import Array, Curve, IntArray
 FIT: Final = 1e-6
 """Largest error, m, in the distance of a traced path from the drawn contour."""
 
-_SAME_POINT: Final = 5e-7
+SAME_POINT: Final = 5e-7
+"""How far apart, m, the offsets of two neighbouring segments may be to be joined without a round between them."""
+
+SHORTEST: Final = 1e-8
+"""Shorter pieces of a path, m, are left out."""
+
 _SEARCH: Final = 1e-4
-_SHORTEST: Final = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,14 +75,11 @@ class Source:
 
     def offset_end(self, k: int) -> Array:
         """Where the offset of segment k ends, (2,) m."""
-        return self._beside(self.curve.ends[k], float(self.headings[1][k]))
+        return beside(self.curve.ends[k], self.headings[1][k], self.shift)
 
     def offset_start(self, k: int) -> Array:
         """Where the offset of segment k starts, (2,) m."""
-        return self._beside(self.curve.starts[k], float(self.headings[0][k]))
-
-    def _beside(self, point: Array, heading: float) -> Array:
-        return np.asarray(point + self.shift * np.array([np.sin(heading), -np.cos(heading)]))
+        return beside(self.curve.starts[k], self.headings[0][k], self.shift)
 
 
 def trace_ring(source: Source, ring: Array) -> Curve:
@@ -131,7 +132,7 @@ def _runs(source: Source, labels: IntArray) -> tuple[list[int], list[int]]:
 
     Rounds shorter than half a micrometre are left out: the motion passes a small corner faster than a tiny arc.
     """
-    tiny = (labels % 2 == 1) & (source.rounds[labels // 2] < _SAME_POINT)
+    tiny = (labels % 2 == 1) & (source.rounds[labels // 2] < SAME_POINT)
     kept = np.flatnonzero(~tiny)
     first = kept[labels[kept] != np.roll(labels[kept], 1)]
     return labels[first].tolist(), first.tolist()
@@ -144,7 +145,7 @@ def _join(source: Source, label: int, following: int, about: Array) -> Array:
         return source.offset_start(following // 2) if label % 2 else source.offset_end(label // 2)
     if label % 2 == 0 and following == (label + 2) % (2 * count):
         end, start = source.offset_end(label // 2), source.offset_start(following // 2)
-        if np.hypot(*(end - start)) <= _SAME_POINT:
+        if np.hypot(*(end - start)) <= SAME_POINT:
             return np.asarray(0.5 * (end + start))
     place = meeting_point(source.element(label), source.element(following), about)
     return about if place is None or np.hypot(*(place - about)) > _SEARCH else place
@@ -156,25 +157,41 @@ def _assemble(source: Source, labels: list[int], first: list[int], ring: Array) 
     joins = [_join(source, labels[i - 1], labels[i], ring[first[i]]) for i in range(count)]
     edge = np.hypot(*(np.roll(ring, -1, axis=0) - ring).T)
     travelled = np.concatenate([[0.0], np.cumsum(edge)])
-    points: list[Array] = []
-    bulges: list[float] = []
+    pieces: list[tuple[Array, Array]] = []
     for i, label in enumerate(labels):
         start, end = joins[i], joins[(i + 1) % count]
         element = source.element(label)
-        turn = 0.0
-        if abs(element.radius) > _SHORTEST:
-            run = travelled[first[(i + 1) % count]] - travelled[first[i]]
-            turn = turn_between(element, start, end, float(run % travelled[-1]) / element.radius)
-        if np.hypot(*(end - start)) <= _SHORTEST and abs(turn) < np.pi:
-            continue
-        halves = 2 if abs(turn) > np.pi * 1.001 else 1
-        points.append(start)
-        if halves == 2:
-            arm = start - element.anchor
-            cos, sin = np.cos(turn / 2.0), np.sin(turn / 2.0)
-            points.append(element.anchor + np.array([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1]]))
-        bulges += [float(np.tan(turn / halves / 4.0))] * halves
-    return Curve(points=np.array(points), bulges=np.array(bulges)) if len(points) >= 2 else None
+        run = travelled[first[(i + 1) % count]] - travelled[first[i]]
+        about = float(run % travelled[-1]) / element.radius if abs(element.radius) > SHORTEST else 0.0
+        points, bulges = arc_or_line(element, start, end, about)
+        if np.hypot(*(end - start)) > SHORTEST or 4.0 * abs(np.arctan(bulges).sum()) >= np.pi:
+            pieces.append((points, bulges))
+    if not pieces:
+        return None
+    points, bulges = (np.concatenate(part) for part in zip(*pieces, strict=True))
+    return Curve(points=points, bulges=bulges) if len(points) >= 2 else None
+
+
+def arc_or_line(element: Element, start: Array, end: Array, about: float) -> tuple[Array, Array]:
+    """The part of an element from ``start`` to ``end``, (2,) m each, that turns by ``about`` rad.
+
+    Returns:
+        its vertices but for the last, (n, 2) m, and their bulges, (n,); two of them where it turns by more than half.
+    """
+    if abs(element.radius) <= SHORTEST:
+        return start[None], np.zeros(1)
+    turn = turn_between(element, start, end, about)
+    if abs(turn) <= np.pi * 1.001:
+        return start[None], np.array([np.tan(turn / 4.0)])
+    arm = start - element.anchor
+    cos, sin = np.cos(turn / 2.0), np.sin(turn / 2.0)
+    middle = element.anchor + np.array([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1]])
+    return np.stack([start, middle]), np.full(2, np.tan(turn / 8.0))
+
+
+def beside(points: Array, headings: Array, shift: float) -> Array:
+    """The points ``shift`` m to the right of ``points``, (..., 2) m, run along ``headings``, (...,) rad."""
+    return np.asarray(points + shift * np.stack([np.sin(headings), -np.cos(headings)], axis=-1))
 
 
 def _matches(source: Source, traced: Curve, ring: Array) -> bool:

@@ -243,6 +243,9 @@ def test_many_slots_that_open_edges_are_one_finding() -> None:
 
 def test_a_ring_that_cannot_be_traced_falls_back_to_its_own_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(trace, "_assemble", lambda *_: None)
-    (cut,) = offset([contour(curves.circle(np.zeros(2), 0.02))], kerf=2e-4).cuts
+    corners = np.array([[0, 0], [20, 0], [20, 10], [10, 10], [10, 20], [0, 20]]) * 1e-3
+    (cut,) = offset([contour(curves.polygon(corners))], kerf=2e-4).cuts
     assert len(cut.curve.points) > 50
-    assert np.hypot(*cut.curve.points.T) == pytest.approx(0.0201, abs=2e-6)
+    assert not cut.curve.bulges.any()
+    away = shapely.distance(shapely.points(cut.curve.points), shapely.LinearRing(corners))
+    assert away == pytest.approx(1e-4, abs=2e-6)
