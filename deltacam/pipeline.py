@@ -102,7 +102,7 @@ def plan(
     at: tuple[float, float] = (0.0, 0.0),
     rotation: float = 0.0,
     mode: Mode = Mode.CUT,
-    jobs: int | None = None,  # noqa: ARG001  # for the motion stage
+    jobs: int | None = None,
     progress: Progress = _silent,
 ) -> Planned:
     """Plan a drawing and check the program independently.
@@ -131,7 +131,7 @@ def plan(
     progress("read", 0, 1)
     selection = replace(selection, rules=process.rules, open=process.open)
     part = read_drawing(drawing, unit=unit, default_unit=default_unit, selection=selection)
-    program, findings = _program(part, robot, process, at, rotation, mode, progress)
+    program, findings = _program(part, robot, process, at, rotation, mode, jobs, progress)
     progress("write", 0, 1)
     content = _content(program)
     program = csv.read(io.BytesIO(content), name=Outputs.of(drawing, ".").program.name)
@@ -204,6 +204,7 @@ def _program(
     at: tuple[float, float],
     rotation: float,
     mode: Mode,
+    jobs: int | None,
     progress: Progress,
 ) -> tuple[Program, tuple[Finding, ...]]:
     """The program of a drawing, and what a person should know about it."""
@@ -218,7 +219,7 @@ def _program(
     if mode is Mode.FRAME:
         moves = _frame(shifted.cuts, robot, process, where)
     else:
-        moves = _cutting(part, shifted.cuts, robot, process, where, mode, progress)
+        moves = _cutting(part, shifted.cuts, robot, process, where, mode, jobs, progress)
     program = Program(
         robot=robot,
         placement=where,
@@ -240,6 +241,7 @@ def _cutting(
     process: Process,
     where: Placement,
     mode: Mode,
+    jobs: int | None,
     progress: Progress,
 ) -> setpoints.Setpoints:
     progress("order", 0, 1)
@@ -252,6 +254,7 @@ def _cutting(
         placement=where,
         drawing_error=part.conversion_error,
         mode=mode,
+        jobs=jobs,
         progress=lambda done, total: progress("motion", done, total),
     )
 

@@ -1,268 +1,249 @@
-"""The fastest time law along a path within every limit, by toppra (Pham and Pham 2018).
+"""The fastest time law along a route within every limit, by toppra (Pham and Pham 2018).
 
-toppra gives each gridpoint one second derivative of the path, but where a line meets an arc there are two. So the
-constraint here belongs to the intervals, not to the points: at the start of an interval it uses the derivatives seen
-from inside it, at the end likewise, and in the middle too. With u the path acceleration, constant in an interval of
-length d, and x the squared path speed at its start, x + 2 f d u after the share f of it, a row a u + b x <= g holds
-there if (a + 2 f d b) u + b x <= g.
+toppra goes along the grid backwards for the largest speed from which the rest of the way can be driven, then forwards
+for the largest speed that stays below it; every step is a linear program in two variables. Its own loop around these
+programs costs five times the programs, so the loop here calls its compiled solver; where that cannot be had, its public
+interface does the same.
+
+The variables of a step are x, the squared speed at the start of an interval, and w, its change over the interval. With
+d the length of the interval the path acceleration is u = w / 2d, and the squared speed after the share f of it x + f w.
+So a quantity a u + b x there is (a / 2d + f b) w + b x.
 """
 
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from deltacam.errors import InfeasibleError
 from deltacam.model import Array, IntArray
-from deltacam.motion.path import Path
+from deltacam.motion.law import TimeLaw
+from deltacam.motion.route import Grid, Route
+from deltacam.motion.rows import SIDES, STATIONS, Rows
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
-SPACING: Final = 5e-4
-"""Longest interval between gridpoints, m."""
-
-STEP: Final = 0.07
-"""Largest turn of an arc between gridpoints, rad: the best speed on an arc changes with the angle."""
-
-GROWTH: Final = 0.7
-"""How much wider intervals are per distance from the end of their segment, up to ``SPACING``."""
-
-STATIONS: Final = (0.0, 0.5, 1.0)
-"""Where in each interval the limits are held; with both ends alone they were exceeded by 0.36 % in between."""
-
-INTERVALS: Final = 4
-"""Fewest intervals per line or arc."""
-
-SIDES: Final = 16
-"""Sides of the half polygon, drawn inside the half circle, that stands for the cap on the tool's acceleration."""
-
-_CHORD_SHARE: Final = 0.95
+_STEP_BACK: Final = 1.0 - 1e-7
+_TRIES: Final = 100
+_SLICE: Final = 4096  # steps for one solver, which keeps 1.7 kB for each
+_SLICES_KEPT: Final = 16
+_BACKWARDS: Final = np.array([1e-9, -1.0])
+_FORWARDS: Final = np.array([-1.0, -1.0])
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """What bounds the motion along one path, beyond the joints' own limits.
-
-    Attributes:
-        speed: of the tool, m/s.
-        acceleration: of the tool, m/s2.
-        chord: how far the motion may leave the path between ticks, m; None where that does not matter.
-    """
-
-    speed: float
-    acceleration: float
-    chord: float | None = None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class TimeLaw:
-    """How far along a path the tool is at a time.
-
-    Attributes:
-        distance: (G,) m, the gridpoints.
-        speed: (G,) m/s at the gridpoints; the square is linear in between.
-        time: (G,) s at the gridpoints.
-    """
-
-    distance: Array
-    speed: Array
-    time: Array
-
-    @property
-    def duration(self) -> float:
-        """From rest to rest, s."""
-        return float(self.time[-1])
-
-    def at(self, time: Array) -> Array:
-        """The distance along the path, (N,) m, at the given times, (N,) s within the duration; exact."""
-        interval = np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(self.time) - 2)
-        since = time - self.time[interval]
-        width = np.diff(self.distance)
-        acceleration = np.diff(self.speed**2) / (2.0 * width)
-        moved = self.speed[interval] * since + 0.5 * acceleration[interval] * since**2
-        return np.asarray(self.distance[interval] + np.clip(moved, 0.0, width[interval]))
-
-
-def parametrize(path: Path, robot: Robot, limits: Limits, *, where: str) -> TimeLaw:
-    """The fastest motion along ``path`` from rest to rest.
-
-    Args:
-        path: tangent lines and arcs.
-        robot: gives joint limits and the tick.
-        limits: of the tool.
-        where: names the path in an error.
+def parametrize(route: Route, robot: Robot) -> TimeLaw:
+    """The fastest motion along every move of a route from rest to rest.
 
     Raises:
-        InfeasibleError: there is none; says where the path stops being drivable.
+        UndrivableError: a move has none; says which, and where it stops being drivable.
         RobotError: the path leaves the reach of the robot.
     """
-    grid = _Grid.over(path, limits)
-    stations = [_Station.of(path, robot, limits, grid, share) for share in STATIONS]
-    squared = _solve(grid.distance, stations, _right_hand_side(robot, limits), where)
-    speed = np.sqrt(squared)
-    duration = 2.0 * np.diff(grid.distance) / (speed[:-1] + speed[1:])
-    return TimeLaw(grid.distance, speed, np.concatenate([[0.0], np.cumsum(duration)]))
+    grid = Grid.over(route, robot)
+    return solve(grid, Rows.over(route, grid, robot))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Grid:
-    """The intervals of a path: every joint of the path is a gridpoint.
+def solve(grid: Grid, rows: Rows, slowness: Array | None = None) -> TimeLaw:
+    """The fastest motion within the rows.
+
+    Args:
+        grid: of the route.
+        rows: the limits on its intervals.
+        slowness: (I,) in 0 to 1; as if the clock ran so much slower there: the speeds are lower by this factor and the
+            accelerations by its square.
+
+    Raises:
+        UndrivableError: there is none.
+    """
+    program = _Program.of(grid, rows, np.ones(len(rows.width)) if slowness is None else slowness**2)
+    squared = program.unit * _profile(program)
+    squared[grid.rest] = 0.0
+    return TimeLaw.of(grid.distance, squared, grid.rest)
+
+
+class UndrivableError(InfeasibleError):
+    """A move has no motion within the limits.
 
     Attributes:
-        segment: (I,) the segment of each interval.
-        start: (I,) m from the start of the segment.
-        end: (I,) m from the start of the segment.
-        distance: (I + 1,) m from the start of the path.
+        move: its number in the route.
+        place: where it stops being drivable, m from its start.
     """
 
-    segment: IntArray
-    start: Array
-    end: Array
-    distance: Array
-
-    @classmethod
-    def over(cls, path: Path, limits: Limits) -> _Grid:
-        """Intervals that are fine where the speed may change fast: near the ends of segments, and on tight arcs.
-
-        At d from the nearer end of a segment they are about h(d) = min(widest, finest + d GROWTH) wide, so that the
-        integral of 1 / h counts them; its inverse gives the gridpoints.
-        """
-        widest = np.minimum(SPACING, STEP / np.maximum(np.abs(path.curvature), 1e-9))
-        finest = np.minimum(widest, 0.25 * limits.speed**2 / limits.acceleration)
-        half = 0.5 * path.length
-        graded = (widest - finest) / GROWTH
-        needed = 2.0 * np.where(
-            half <= graded,
-            np.log1p(GROWTH * half / finest) / GROWTH,
-            np.log(widest / finest) / GROWTH + (half - graded) / widest,
-        )
-        count = np.maximum(INTERVALS, np.ceil(needed - 1e-9)).astype(np.int64)
-        segment = np.repeat(np.arange(len(count)), count)
-        index = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
-
-        def place(passed: IntArray) -> Array:
-            """Where each segment's ``passed`` first intervals end, (I,) m."""
-            nearer = np.minimum(passed, count[segment] - passed) * (needed / count)[segment]
-            low, high = finest[segment], widest[segment]
-            grown = low * np.expm1(np.minimum(GROWTH * nearer, np.log(high / low))) / GROWTH
-            from_end = grown + np.maximum(nearer - np.log(high / low) / GROWTH, 0.0) * high
-            from_end = np.minimum(from_end, half[segment])
-            return np.asarray(np.where(2 * passed <= count[segment], from_end, path.length[segment] - from_end))
-
-        start, end = place(index), place(index + 1)
-        offset = np.concatenate([[0.0], np.cumsum(path.length)])
-        return cls(segment, start, end, np.append(offset[segment] + start, offset[-1]))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Station:
-    """The limits at one place in every interval.
-
-    Attributes:
-        share: how far into the interval, 0 to 1.
-        a: (I, m) factor of the path acceleration in the rows.
-        b: (I, m) factor of the squared path speed in the rows.
-        bound: (I,) largest squared path speed.
-    """
-
-    share: float
-    a: Array
-    b: Array
-    bound: Array
-
-    @classmethod
-    def of(cls, path: Path, robot: Robot, limits: Limits, grid: _Grid, share: float) -> _Station:
-        segment = grid.segment
-        position, tangent, bend = path.evaluate(segment, grid.start + share * (grid.end - grid.start))
-        _, dq, ddq = robot.path_derivatives(position, tangent, bend)
-        angle = (np.arange(SIDES) + 0.5) * np.pi / SIDES
-        curvature = np.abs(path.curvature[segment])
-        a = np.concatenate([dq, -dq, np.broadcast_to(np.cos(angle), (len(dq), SIDES))], axis=1)
-        b = np.concatenate([ddq, -ddq, curvature[:, None] * np.sin(angle)], axis=1)
-        fastest = np.min(np.asarray(robot.joints.max_speed) / np.maximum(np.abs(dq), 1e-12), axis=1)
-        bound = np.minimum(fastest, limits.speed) ** 2
-        if limits.chord is not None:
-            bound = np.minimum(bound, _chord_bound(robot, position, tangent, ddq, limits.chord))
-        return cls(share, a, b, bound)
-
-    def rows(self, width: Array) -> tuple[Array, Array]:
-        """The factors of u and of x at the start of the interval, (I, m + 1) each; the last row bounds the speed."""
-        ahead = 2.0 * self.share * width[:, None]
-        bound = self.bound[:, None]
-        return np.concatenate([self.a + ahead * self.b, ahead / bound], axis=1), np.concatenate(
-            [self.b, 1.0 / bound], axis=1
-        )
-
-
-def _chord_bound(robot: Robot, position: Array, tangent: Array, ddq: Array, chord: float) -> Array:
-    """The squared path speed, (I,) m2/s2, at which straight joint motion between ticks leaves the path by ``chord``.
-
-    Straight motion in the joints lags behind by (q' u + q'' x) dt^2 / 8 in the middle of a tick, at the tool by J times
-    that. The first part lies along the path and does no harm; the second has a part across.
-    """
-    lag = np.linalg.solve(robot.inverse_jacobian(position), ddq[:, :, None])[:, :, 0]
-    across = np.linalg.norm(lag - np.sum(lag * tangent, axis=1, keepdims=True) * tangent, axis=1)
-    tick = 1.0 / robot.controller.rate_hz
-    return np.asarray(_CHORD_SHARE * 8.0 * chord / (tick**2 * np.maximum(across, 1e-12)))
-
-
-def _right_hand_side(robot: Robot, limits: Limits) -> Array:
-    """What the rows of a station may be at most, (m + 1,)."""
-    joints = np.asarray(robot.joints.max_acceleration)
-    tool = limits.acceleration * np.cos(np.pi / (2 * SIDES))
-    return np.concatenate([joints, joints, np.full(SIDES, tool), [1.0]])
-
-
-def _solve(grid: Array, stations: list[_Station], limit: Array, where: str) -> Array:
-    """The squared speed at every gridpoint, (I + 1,) m2/s2, 0 at both ends."""
-    # toppra takes long to import, because it loads matplotlib.
-    from toppra.algorithm import TOPPRA
-    from toppra.constraint import LinearConstraint
-
-    rows = [station.rows(np.diff(grid)) for station in stations]
-    a, b = (np.concatenate(part, axis=1) for part in zip(*rows, strict=True))
-    ceiling = np.max([station.bound.max() for station in stations])
-
-    class Rows(LinearConstraint):  # type: ignore[misc]
-        """The rows above, as toppra asks for them; the last point has none of its own."""
-
-        def __init__(self) -> None:
-            super().__init__()
-            self.identical = True
-
-        def compute_constraint_params(self, *_: object) -> tuple[Any, ...]:
-            last = np.zeros((1, a.shape[1]))
-            a_all, b_all = np.concatenate([a, last]), np.concatenate([b, last])
-            speed = np.tile([0.0, ceiling], (len(grid), 1))
-            right = np.tile(limit, len(stations))
-            return a_all, b_all, np.zeros_like(a_all), np.eye(a.shape[1]), right, None, speed
-
-    logging.getLogger("toppra").setLevel(logging.ERROR)  # what it warns of is found out, and said, below
-    solver = TOPPRA(
-        [Rows()], _Interval(grid), gridpoints=grid, solver_wrapper="seidel", parametrizer="ParametrizeConstAccel"
-    )
-    _, speed, _, controllable = solver.compute_parameterization(0.0, 0.0, return_data=True)
-    if speed is None or not np.isfinite(speed).all() or np.any((speed[:-1] + speed[1:]) <= 0.0):
-        lost = np.flatnonzero(np.isnan(controllable).any(axis=1))
-        place = float(grid[lost[-1]]) if len(lost) else 0.0
-        raise InfeasibleError(
-            f"no motion within the limits passes {place * 1e3:.3f} mm of {grid[-1] * 1e3:.3f} mm along this path",
-            where=where,
+    def __init__(self, move: int, place: float, length: float) -> None:
+        super().__init__(
+            f"no motion within the limits passes {place * 1e3:.3f} mm of {length * 1e3:.3f} mm along this path",
             hint="this is likely a fault of deltacam: please report it with the drawing",
         )
-    squared = np.asarray(speed, dtype=np.float64) ** 2
-    squared[[0, -1]] = 0.0
-    return squared
+        self.move = move
+
+
+class _Block(NamedTuple):
+    """Rows of every step: F (a w + b x + c) <= 0 with a, b and c (I + 1, m) and F (k, m); the last point has none."""
+
+    a: Array
+    b: Array
+    c: Array
+    F: Array
+
+
+class _Program(NamedTuple):
+    """The linear programs of all steps of a grid, in numbers near 1, because toppra has absolute tolerances.
+
+    Attributes:
+        blocks: the rows.
+        highest: (I + 1,) largest x.
+        unit: (I + 1,) m2/s2, what 1 stands for in x and w: the largest squared speed of the move.
+        distance: (I + 1,) m, the gridpoints, for messages.
+        rest: (K + 1,) those at which moves begin, and the last.
+    """
+
+    blocks: list[_Block]
+    highest: Array
+    unit: Array
+    distance: Array
+    rest: IntArray
+
+    @classmethod
+    def of(cls, grid: Grid, rows: Rows, share: Array) -> _Program:
+        """The programs within ``share`` (I,) of every limit."""
+        fastest = np.maximum.reduceat(rows.bound.max(axis=0), grid.rest[:-1])
+        unit = np.repeat(fastest, np.diff(grid.rest))
+        scale, steep = (unit / share)[:, None], (unit / share / (2.0 * rows.width))[:, None]
+        blocks = []
+        for station, passed in enumerate(STATIONS):
+            x = rows.joint_b[station] * scale
+            blocks.append(_block(rows.joint_a[station] * steep + passed * x, x, _JOINTS))
+            x = rows.across[station][:, None] * scale * _TOOL_X
+            blocks.append(_block(rows.along[:, None] * steep * _TOOL_W + passed * x, x, _TOOL))
+            if 0.0 < passed < 1.0:  # the ends are bounded by `highest`
+                x = scale / rows.bound[station][:, None]
+                blocks.append(_block(passed * x, x, np.array([[1.0, 1.0]])))
+        bound = share * np.stack([rows.bound[0], rows.bound[-1]]) / unit
+        highest = np.minimum(np.append(bound[0], np.inf), np.insert(bound[1], 0, np.inf))
+        highest[grid.rest] = 0.0
+        return cls(blocks, highest, np.append(unit, unit[-1]), grid.distance, grid.rest)
+
+    def part(self, number: int) -> _Program:
+        """The steps of one slice."""
+        points = slice(number * _SLICE, (number + 1) * _SLICE + 1)
+        blocks = [_Block(block.a[points], block.b[points], block.c[points], block.F) for block in self.blocks]
+        return self._replace(blocks=blocks, highest=self.highest[points])
+
+    def undrivable(self, point: int) -> UndrivableError:
+        """The error for a gridpoint that cannot be passed."""
+        move = min(int(np.searchsorted(self.rest, point, side="right")), len(self.rest) - 1) - 1
+        start, end = self.distance[self.rest[move : move + 2]]
+        return UndrivableError(move, float(self.distance[point] - start), float(end - start))
+
+
+_JOINTS: Final = np.hstack([np.concatenate([np.eye(3), -np.eye(3)]), np.ones((6, 1))])
+_ANGLE: Final = (np.arange(SIDES) + 0.5) * np.pi / SIDES
+_TOOL: Final = np.column_stack([np.cos(_ANGLE), np.sin(_ANGLE), np.full(SIDES, np.cos(0.5 * np.pi / SIDES))])
+_TOOL_W: Final = np.array([1.0, 0.0])
+_TOOL_X: Final = np.array([0.0, 1.0])
+
+
+def _block(w: Array, x: Array, F: Array) -> _Block:
+    """The rows F (w W + x X) <= the last column of F, scaled so that no factor of a step is above 1."""
+    size = 1.0 / np.maximum(1.0, np.maximum(np.abs(w), np.abs(x)).max(axis=1, keepdims=True))
+    none = np.zeros_like(size)
+    parts = [np.hstack([w * size, none]), np.hstack([x * size, none]), np.hstack([np.zeros_like(w), -size])]
+    last = np.zeros((1, F.shape[1]))
+    a, b, c = (np.concatenate([part, last]) for part in parts)
+    c[-1, -1] = -1.0
+    return _Block(a, b, c, F)
+
+
+def load_solver() -> None:
+    """Import toppra, which takes about a second, because it loads matplotlib."""
+    import toppra  # noqa: F401
+
+
+def _profile(program: _Program) -> Array:
+    """The largest x at every gridpoint, (I + 1,), by toppra's compiled solver or else by its public interface."""
+    try:
+        from toppra.solverwrapper.cy_seidel_solverwrapper import seidelWrapper
+    except ImportError:
+        return _by_public_interface(program)
+    return _by_compiled_solver(program, seidelWrapper)
+
+
+def _by_compiled_solver(program: _Program, wrapper: Any) -> Array:
+    count, nan = len(program.highest) - 1, float("nan")
+
+    @lru_cache(maxsize=_SLICES_KEPT)
+    def steps(part: int) -> Any:
+        return wrapper(*_for_toppra(program.part(part))).solve_stagewise_optim
+
+    highest = [0.0] * (count + 1)
+    for point in range(count - 1, -1, -1):
+        part, inside = divmod(point, _SLICE)
+        # x = 0 is always drivable: the lower end of the controllable set needs no program.
+        highest[point] = steps(part)(inside, None, _BACKWARDS, nan, nan, 0.0, highest[point + 1])[1]
+        if highest[point] != highest[point]:
+            raise program.undrivable(point)
+    x, squared = 0.0, [0.0] * (count + 1)
+    for point in range(count):
+        part, inside = divmod(point, _SLICE)
+        step, after = steps(part), highest[point + 1]
+        change = step(inside, None, _FORWARDS, x, x, 0.0, after)[0]
+        for _ in range(_TRIES):
+            if change == change:
+                break
+            # At the very edge of the controllable set rounding may leave no solution; a little below there is one.
+            squared[point] = x = x * _STEP_BACK
+            change = step(inside, None, _FORWARDS, x, x, 0.0, after)[0]
+        else:
+            raise program.undrivable(point)
+        squared[point + 1] = x = min(max(x + change, 0.0), after)
+    return np.array(squared)
+
+
+def _by_public_interface(program: _Program) -> Array:
+    from toppra.algorithm import TOPPRA
+
+    logging.getLogger("toppra").setLevel(logging.ERROR)  # what it warns of is found out, and said, below
+    constraints, path, grid = _for_toppra(program)
+    solver = TOPPRA(constraints, path, grid, solver_wrapper="seidel", parametrizer="ParametrizeConstAccel")
+    _, speed, _, controllable = solver.compute_parameterization(0.0, 0.0, return_data=True)
+    if speed is None or not np.isfinite(speed).all():
+        lost = np.flatnonzero(np.isnan(controllable).any(axis=1) | ~np.isfinite(0.0 if speed is None else speed))
+        raise program.undrivable(int(lost[-1]) if len(lost) else 0)
+    return np.asarray(speed, dtype=np.float64) ** 2
+
+
+def _for_toppra(program: _Program) -> tuple[list[Any], Any, Array]:
+    """The constraints, the path and the gridpoints; those are half apart, so that its u, (x' - x) / 2 d, is w."""
+    from toppra.constraint import LinearConstraint
+
+    class Rows(LinearConstraint):  # type: ignore[misc]
+        """One block of rows; the bounds of x come with one of them, because reading them takes long."""
+
+        def __init__(self, block: _Block, bounds: Array | None) -> None:
+            super().__init__()
+            self.identical = True
+            self.parameters = *block, np.zeros(len(block.F)), None, bounds
+
+        def compute_constraint_params(self, *_: object) -> tuple[Any, ...]:
+            return self.parameters
+
+    bounds = np.column_stack([np.zeros_like(program.highest), program.highest])
+    grid = np.linspace(0.0, 0.5 * (len(program.highest) - 1), len(program.highest))
+    constraints = [Rows(block, bounds if block is program.blocks[0] else None) for block in program.blocks]
+    return constraints, _Interval(grid), grid
 
 
 class _Interval:
-    """What toppra asks of a geometric path when the constraint brings its own derivatives."""
+    """What toppra asks of a geometric path when the constraints bring their own derivatives."""
 
     def __init__(self, grid: Array) -> None:
         self.path_interval = np.array([grid[0], grid[-1]])
         self.duration = float(grid[-1] - grid[0])
         self.dof = 3
+
+    def get_duration(self) -> float:
+        """The old name of ``duration``, which the compiled solver uses."""
+        return self.duration

@@ -1,23 +1,26 @@
-"""A path of lines and arcs that is run from rest to rest, by its arc length."""
+"""Paths of lines, arcs and clothoids by their arc length, and the moves that are run along them from rest to rest."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 
+from deltacam.geometry import clothoid
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Curve, IntArray, readonly
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
-    """Lines and arcs in the base frame's sheet plane, tangent to each other.
+    """Lines, arcs and clothoids in the base frame's sheet plane.
 
     Attributes:
         start: (M, 2) m, where each segment starts.
         heading: (M,) rad, its direction there.
-        curvature: (M,) 1/m, positive to the left.
+        curvature: (M,) 1/m there, positive to the left.
+        sharpness: (M,) 1/m^2, the change of the curvature per length; 0 for lines and arcs.
         length: (M,) m, > 0.
         z: m, the height of the plane.
     """
@@ -25,12 +28,13 @@ class Path:
     start: Array
     heading: Array
     curvature: Array
+    sharpness: Array
     length: Array
     z: float
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "start", readonly(self.start, columns=2))
-        for name in ("heading", "curvature", "length"):
+        for name in ("heading", "curvature", "sharpness", "length"):
             object.__setattr__(self, name, readonly(getattr(self, name)))
 
     @property
@@ -38,7 +42,18 @@ class Path:
         """The arc length of the whole path, m."""
         return float(self.length.sum())
 
-    def evaluate(self, segment: IntArray, distance: Array) -> tuple[Array, Array, Array]:
+    @property
+    def sharpest(self) -> Array:
+        """The largest size of the curvature in each segment, (M,) 1/m: it is at one of the ends."""
+        return np.maximum(np.abs(self.curvature), np.abs(self.curvature + self.sharpness * self.length))
+
+    def part(self, first: int, end: int) -> Path:
+        """The segments from ``first`` to before ``end``."""
+        columns = (self.start, self.heading, self.curvature, self.sharpness, self.length)
+        start, heading, curvature, sharpness, length = (column[first:end] for column in columns)
+        return Path(start, heading, curvature, sharpness, length, self.z)
+
+    def evaluate(self, segment: IntArray, distance: Array) -> tuple[Array, Array, Array, Array]:
         """Position and its derivatives by arc length at ``distance`` m from the start of the given segments.
 
         Args:
@@ -46,15 +61,17 @@ class Path:
             distance: (N,) m, within the segment; both ends belong to it, so that each side of a joint can be asked for.
 
         Returns:
-            p (N, 3) m, p' (N, 3), p'' (N, 3) 1/m in the base frame.
+            p (N, 3) m, p' (N, 3), p'' (N, 3) 1/m, p''' (N, 3) 1/m^2 in the base frame.
         """
-        curvature = self.curvature[segment]
-        points, heading = curves.advance(self.start[segment], self.heading[segment], curvature, distance)
+        curvature, sharpness = self.curvature[segment], self.sharpness[segment]
+        points, heading = clothoid.advance(self.start[segment], self.heading[segment], curvature, sharpness, distance)
+        bend = curvature + sharpness * distance
         cos, sin, flat = np.cos(heading), np.sin(heading), np.zeros_like(heading)
         position = np.column_stack([points, np.full_like(heading, self.z)])
         tangent = np.column_stack([cos, sin, flat])
-        bend = np.column_stack([-sin * curvature, cos * curvature, flat])
-        return position, tangent, bend
+        second = np.column_stack([-sin * bend, cos * bend, flat])
+        third = np.column_stack([-sin * sharpness - cos * bend**2, cos * sharpness - sin * bend**2, flat])
+        return position, tangent, second, third
 
     def locate(self, distance: Array) -> tuple[IntArray, Array]:
         """The segments that hold the given distances from the start of the path, and how far into them these lie.
@@ -69,11 +86,12 @@ class Path:
 
 
 def from_curve(curve: Curve, z: float) -> Path:
-    """The path along an open curve whose segments are tangent, at height ``z`` m."""
+    """The path along an open curve, at height ``z`` m."""
     return Path(
         start=curve.starts,
         heading=curves.headings(curve)[0],
         curvature=curves.curvatures(curve),
+        sharpness=np.zeros(len(curve.bulges)),
         length=curves.lengths(curve),
         z=z,
     )
@@ -82,3 +100,9 @@ def from_curve(curve: Curve, z: float) -> Path:
 def straight(start: Array, end: Array, z: float) -> Path:
     """The straight path from ``start`` to ``end``, (2,) m each and apart, at height ``z`` m."""
     return from_curve(Curve(points=np.array([start, end]), bulges=np.zeros(1), closed=False), z)
+
+
+def join(paths: Sequence[Path]) -> Path:
+    """The segments of several paths at one height, one path after the other."""
+    names = [field.name for field in fields(Path) if field.name != "z"]
+    return Path(**{name: np.concatenate([getattr(path, name) for path in paths]) for name in names}, z=paths[0].z)

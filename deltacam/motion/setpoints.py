@@ -13,8 +13,9 @@ from deltacam.errors import InfeasibleError, ProcessError
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Block, BlockKind, Cut, IntArray, Mode, Operation, Placement, Process
 from deltacam.motion.corners import pieces
-from deltacam.motion.parametrize import Limits, TimeLaw, parametrize
-from deltacam.motion.path import Path, from_curve, straight
+from deltacam.motion.path import Path, straight
+from deltacam.motion.route import Limits
+from deltacam.motion.schedule import Move, schedule
 from deltacam.units import to_um
 
 if TYPE_CHECKING:
@@ -44,18 +45,6 @@ class Setpoints:
     blocks: tuple[Block, ...]
 
 
-def sample(path: Path, law: TimeLaw, robot: Robot) -> Array:
-    """The joint setpoints of a move from rest to rest, (N, 3) rad, without the one at which it ends.
-
-    The motion is stretched by less than one tick, so that it ends on a tick; that only lowers speed and acceleration.
-    """
-    rate = robot.controller.rate_hz
-    ticks = max(1, math.ceil(law.duration * rate - _ROUNDING))
-    distance = law.at(np.arange(ticks) / ticks * law.duration)
-    position, _, _ = path.evaluate(*path.locate(distance))
-    return robot.inverse(position)
-
-
 def plan_motion(
     cuts: Sequence[Cut],
     *,
@@ -64,6 +53,7 @@ def plan_motion(
     placement: Placement,
     drawing_error: float,
     mode: Mode = Mode.CUT,
+    jobs: int | None = None,
     progress: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> Setpoints:
     """The setpoints that run the cuts in order, from rest at the park position to rest at the park position.
@@ -77,7 +67,8 @@ def plan_motion(
         placement: of the sheet frame.
         drawing_error: how far the contours may lie from the file's exact geometry, m; part of the tolerance.
         mode: with ``DRY_RUN`` the laser stays off.
-        progress: is told how many cuts are done, and of how many.
+        jobs: processes, >= 1; None takes as many as pay.
+        progress: is told how many cuts or parts of cuts are done, and of how many.
 
     Raises:
         InfeasibleError: a move has no time law within the limits, or the tolerance is less than the errors before it.
@@ -89,20 +80,18 @@ def plan_motion(
     ways = {operation: _way(operation, robot, process) for operation in {cut.operation for cut in cuts}}
     tape = _Tape(robot, np.array(robot.workspace.park), placement.z)
     tape.rest(BlockKind.RAPID, ticks=1)
-    for done, cut in enumerate(cuts):
-        progress(done, len(cuts))
+    for cut in cuts:
         curve = curves.transform(cut.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
         tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
         way = ways[cut.operation]
         power = way.power if mode is Mode.CUT else 0.0
         tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
-        for piece in pieces(curve, corner=process.corner, deviation=deviation):
-            path = from_curve(piece, placement.z)
+        ramps = robot.joints.max_jerk is not None
+        for path in pieces(curve, corner=process.corner, deviation=deviation, ramps=ramps, z=placement.z):
             tape.run(path, way.limits, way.kind, power=power, cut=cut, where=cut.where)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
-    progress(len(cuts), len(cuts))
-    return tape.setpoints()
+    return tape.setpoints(jobs=jobs, progress=progress)
 
 
 def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Placement) -> Setpoints:
@@ -126,7 +115,7 @@ def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Pla
         tape.travel(corner, tracing, where="the frame")
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
-    return tape.setpoints()
+    return tape.setpoints(jobs=1, progress=lambda _done, _total: None)
 
 
 def rapid_limits(robot: Robot) -> Limits:
@@ -191,23 +180,35 @@ def _left_for_corners(tolerance: float, drawing_error: float) -> float:
     return max(0.0, left)
 
 
+class _Rest(NamedTuple):
+    """Ticks at one place, (2,) m."""
+
+    place: Array
+    ticks: int
+
+
+class _Step(NamedTuple):
+    """What a rest or a move is for: the kind of its block, the laser's power, and the cut that it belongs to."""
+
+    motion: _Rest | Move
+    kind: BlockKind
+    power: float
+    cut: Cut | None
+
+
 @dataclass(slots=True, eq=False)
 class _Tape:
-    """The program as it grows: moves and rests are put behind each other."""
+    """The program as it grows: moves and rests are put behind each other, and run at the end."""
 
     robot: Robot
     place: Array
     z: float
-    _q: list[Array] = field(default_factory=list)
-    _power: list[Array] = field(default_factory=list)
-    _blocks: list[Block] = field(default_factory=list)
-    _ticks: int = 0
+    _steps: list[_Step] = field(default_factory=list)
 
     def rest(self, kind: BlockKind, *, ticks: int, power: float = 0.0, cut: Cut | None = None) -> None:
         """Hold the present place for a number of ticks; none is nothing."""
         if ticks:
-            here = self.robot.inverse(np.array([[*self.place, self.z]]))
-            self._append(np.repeat(here, ticks, axis=0), kind, power, cut)
+            self._steps.append(_Step(_Rest(self.place, ticks), kind, power, cut))
 
     def travel(self, end: Array, limits: Limits, *, where: str) -> None:
         """Go straight to ``end``, (2,) m, with the laser off; nothing where the tool is there."""
@@ -218,22 +219,36 @@ class _Tape:
         self, path: Path, limits: Limits, kind: BlockKind, *, where: str, power: float = 0.0, cut: Cut | None = None
     ) -> None:
         """Run along ``path`` from rest to rest."""
-        law = parametrize(path, self.robot, limits, where=where)
-        self._append(sample(path, law, self.robot), kind, power, cut)
-        end, _, _ = path.evaluate(np.array([len(path.length) - 1]), path.length[-1:])
+        self._steps.append(_Step(Move(path, limits, where), kind, power, cut))
+        end, _, _, _ = path.evaluate(np.array([len(path.length) - 1]), path.length[-1:])
         self.place = end[0, :2]
 
-    def setpoints(self) -> Setpoints:
-        """Everything that was put on the tape."""
-        block = np.repeat(np.arange(len(self._blocks)), [b.last - b.first + 1 for b in self._blocks])
-        return Setpoints(np.concatenate(self._q), np.concatenate(self._power), block, tuple(self._blocks))
+    def setpoints(self, *, jobs: int | None, progress: Callable[[int, int], None]) -> Setpoints:
+        """Everything that was put on the tape, at every tick."""
+        moves = [step.motion for step in self._steps if isinstance(step.motion, Move)]
+        cuts = np.cumsum([step.cut is not None for step in self._steps if isinstance(step.motion, Move)])
+        total = int(cuts[-1]) if len(cuts) else 0
+        progress(0, total)
+        runs = iter(schedule(moves, self.robot, jobs=jobs, progress=lambda done: progress(int(cuts[done - 1]), total)))
+        rests = [(*step.motion.place, self.z) for step in self._steps if isinstance(step.motion, _Rest)]
+        held = iter(self.robot.inverse(np.array(rests).reshape(-1, 3)))
+        q, power, blocks = [], [], list[Block]()
+        ticks = 0
+        for step in self._steps:
+            rows = next(runs).q if isinstance(step.motion, Move) else np.tile(next(held), (step.motion.ticks, 1))
+            q.append(rows)
+            power.append(np.full(len(rows), step.power))
+            _append(blocks, step, ticks, len(rows))
+            ticks += len(rows)
+        block = np.repeat(np.arange(len(blocks)), [one.last - one.first + 1 for one in blocks])
+        return Setpoints(np.concatenate(q), np.concatenate(power), block, tuple(blocks))
 
-    def _append(self, q: Array, kind: BlockKind, power: float, cut: Cut | None) -> None:
-        first, self._ticks = self._ticks, self._ticks + len(q)
-        self._q.append(q)
-        self._power.append(np.full(len(q), power))
-        contour, layer, handles = (cut.contour, cut.layer, cut.handles) if cut else (None, "", ())
-        if self._blocks and self._blocks[-1].kind is kind and self._blocks[-1].contour == contour:
-            self._blocks[-1] = replace(self._blocks[-1], last=self._ticks - 1)
-        else:
-            self._blocks.append(Block(kind, first, self._ticks - 1, contour, layer, handles))
+
+def _append(blocks: list[Block], step: _Step, first: int, ticks: int) -> None:
+    """Put the ticks of a step into the last block where they continue it, else into a new one."""
+    cut, last = step.cut, first + ticks - 1
+    contour, layer, handles = (cut.contour, cut.layer, cut.handles) if cut else (None, "", ())
+    if blocks and blocks[-1].kind is step.kind and blocks[-1].contour == contour:
+        blocks[-1] = replace(blocks[-1], last=last)
+    else:
+        blocks.append(Block(step.kind, first, last, contour, layer, handles))

@@ -152,6 +152,44 @@ def path_derivatives(
     return np.arctan2(arms.sin, arms.cos), dq, ddq
 
 
+def third_derivative(
+    geometry: DeltaGeometry, p: npt.ArrayLike, dp: npt.ArrayLike, ddp: npt.ArrayLike, dddp: npt.ArrayLike
+) -> Array:
+    """The third derivative of the joint angles by the parameter of a path, in closed form.
+
+    From |S_i|^2 = Lb^2 differentiated three times, with S' and S'' the derivatives of the forearm:
+    S.b q''' = 3 S'.S'' + S.p''' - 3 (S.db/dq) q' q'' + S.b q'^3.
+
+    Args:
+        geometry: the robot.
+        p: points of the path, (N, 3) m.
+        dp: dp/ds, (N, 3).
+        ddp: d2p/ds2, (N, 3).
+        dddp: d3p/ds3, (N, 3).
+
+    Returns:
+        d3q/ds3 (N, 3). With time as the parameter: jerk.
+
+    Raises:
+        RobotError: as `path_derivatives`.
+        ValueError: a shape is not (N, 3), or the shapes differ.
+    """
+    _, dq, ddq = path_derivatives(geometry, p, dp, ddp)
+    arms, third = solve_drivable(geometry, p), rows(dddp, "third derivatives")
+    if len(third) != len(dq):
+        raise ValueError(f"{len(dq)} points, {len(third)} third derivatives")
+    La = geometry.upper_arm
+    drive = La * arms.t
+    bx, bz, cx, cz = -La * arms.sin, -La * arms.cos, -La * arms.cos, La * arms.sin  # b and db/dq along u and z
+    sx, sz = arms.x + cx, arms.z + cz
+    dx, dy, dz = components(geometry, rows(dp, "first derivatives"))
+    ddx, ddy, ddz = components(geometry, rows(ddp, "second derivatives"))
+    dddx, dddy, dddz = components(geometry, third)
+    swing = (dx - bx * dq) * (ddx - bx * ddq - cx * dq**2) + dy * ddy + (dz - bz * dq) * (ddz - bz * ddq - cz * dq**2)
+    pull = sx * dddx + arms.y * dddy + sz * dddz
+    return np.asarray((3.0 * swing + pull - 3.0 * La * (La - arms.k) * dq * ddq) / drive + dq**3)
+
+
 def reach_margin(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
     """How far every arm is from the edge of its reach: (sqrt(D) - |k|) / La, smooth, negative out of reach.
 

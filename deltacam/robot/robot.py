@@ -164,6 +164,10 @@ class Robot:
         """Joint angles and their derivatives along a path, three times (N, 3); see `kinematics.path_derivatives`."""
         return kinematics.path_derivatives(self.geometry, p, dp, ddp)
 
+    def third_derivative(self, p: npt.ArrayLike, dp: npt.ArrayLike, ddp: npt.ArrayLike, dddp: npt.ArrayLike) -> Array:
+        """The third derivative of the joint angles along a path, (N, 3); see `kinematics.third_derivative`."""
+        return kinematics.third_derivative(self.geometry, p, dp, ddp, dddp)
+
     def reach_margin(self, points: npt.ArrayLike) -> Array:
         """How far the arms are from the edge of their reach, (N, 3); see `kinematics.reach_margin`."""
         return kinematics.reach_margin(self.geometry, points)

@@ -9,13 +9,15 @@ from scipy.integrate import quad
 from scipy.optimize import linprog
 from scipy.sparse import coo_matrix
 
-from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Curve
 from deltacam.motion import parametrize as module
 from deltacam.motion.corners import pieces
-from deltacam.motion.parametrize import Limits, parametrize
-from deltacam.motion.path import Path, from_curve, straight
+from deltacam.motion.law import TimeLaw
+from deltacam.motion.parametrize import UndrivableError, parametrize
+from deltacam.motion.path import Path, straight
+from deltacam.motion.route import Grid, Limits, Route
+from deltacam.motion.rows import Rows
 from deltacam.robot.reader import load_robot
 from deltacam.robot.robot import Robot
 from tests.strategies import slot
@@ -36,8 +38,16 @@ WEAK = replace(
 
 
 def around(curve: Curve) -> Path:
-    (part,) = pieces(curve, corner="round", deviation=17e-6)
-    return from_curve(part, Z)
+    (path,) = pieces(curve, corner="round", deviation=17e-6, ramps=False, z=Z)
+    return path
+
+
+def timed(path: Path, robot: Robot, limits: Limits) -> TimeLaw:
+    return parametrize(Route.of([(path, limits)]), robot)
+
+
+def speeds(law: TimeLaw) -> Array:
+    return np.sqrt(law.squared)
 
 
 def random_path(seed: int) -> Path:
@@ -48,15 +58,17 @@ def random_path(seed: int) -> Path:
     radius = 10.0 ** rng.uniform(-2.6, -1.5, count)
     bulges = np.where(rng.random(count) < 0.5, 0.0, rng.uniform(-0.3, 0.5, count))
     points = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    parts = pieces(Curve(points=points + rng.uniform(-0.1, 0.1, 2), bulges=bulges), corner="round", deviation=17e-6)
-    return from_curve(max(parts, key=curves.length), Z)
+    curve = Curve(points=points + rng.uniform(-0.1, 0.1, 2), bulges=bulges)
+    parts = pieces(curve, corner="round", deviation=17e-6, ramps=seed % 2 == 1, z=Z)
+    return max(parts, key=lambda path: path.total)
 
 
 def derivatives(path: Path, distance: Array) -> tuple[Array, Array, Array]:
     """q' and q'' and curvature just where asked, from inside a segment."""
     segment, inside = path.locate(distance)
-    _, dq, ddq = ROBOT.path_derivatives(*path.evaluate(segment, inside))
-    return dq, ddq, np.abs(path.curvature[segment])
+    position, tangent, bend, _ = path.evaluate(segment, inside)
+    _, dq, ddq = ROBOT.path_derivatives(position, tangent, bend)
+    return dq, ddq, np.linalg.norm(bend, axis=1)
 
 
 def test_a_circle_takes_the_closed_form_time() -> None:
@@ -68,28 +80,28 @@ def test_a_circle_takes_the_closed_form_time() -> None:
     r = 0.02
     ramp, _ = quad(lambda s: 1.0 / math.sqrt(CAP * r * math.sin(2.0 * s / r)), 0.0, math.pi * r / 4.0)
     best = 2.0 * ramp + 1.5 * math.pi * r / math.sqrt(CAP * r)
-    law = parametrize(around(curves.circle(np.zeros(2), r)), ROBOT, Limits(10.0, CAP), where="circle")
-    assert best * 0.99999 <= law.duration <= best * 1.005
+    law = timed(around(curves.circle(np.zeros(2), r)), ROBOT, Limits(10.0, CAP))
+    assert best * 0.99999 <= law.durations[0] <= best * 1.005
 
 
 def test_a_straight_line_takes_the_closed_form_time() -> None:
-    short = parametrize(straight(np.array([-0.05, 0.0]), np.array([0.05, 0.0]), Z), ROBOT, Limits(10.0, CAP), where="")
-    assert short.duration == pytest.approx(2.0 * math.sqrt(0.1 / CAP), rel=1e-3)
-    slow = parametrize(straight(np.array([-0.05, 0.0]), np.array([0.05, 0.0]), Z), ROBOT, Limits(0.05, CAP), where="")
-    assert slow.duration == pytest.approx(0.1 / 0.05 + 0.05 / CAP, rel=1e-3)
-    long = parametrize(straight(np.array([-0.14, 0.1]), np.array([0.14, 0.1]), Z), ROBOT, Limits(0.5, CAP), where="")
-    assert long.duration == pytest.approx(0.28 / 0.5 + 0.5 / CAP, rel=1e-3)
+    short = timed(straight(np.array([-0.05, 0.0]), np.array([0.05, 0.0]), Z), ROBOT, Limits(10.0, CAP))
+    assert short.durations[0] == pytest.approx(2.0 * math.sqrt(0.1 / CAP), rel=1e-3)
+    slow = timed(straight(np.array([-0.05, 0.0]), np.array([0.05, 0.0]), Z), ROBOT, Limits(0.05, CAP))
+    assert slow.durations[0] == pytest.approx(0.1 / 0.05 + 0.05 / CAP, rel=1e-3)
+    long = timed(straight(np.array([-0.14, 0.1]), np.array([0.14, 0.1]), Z), ROBOT, Limits(0.5, CAP))
+    assert long.durations[0] == pytest.approx(0.28 / 0.5 + 0.5 / CAP, rel=1e-3)
 
 
 @pytest.mark.parametrize("robot", [ROBOT, WEAK], ids=["strong joints", "weak joints"])
 @pytest.mark.parametrize("seed", range(12))
 def test_no_limit_is_exceeded_between_gridpoints_either(seed: int, robot: Robot) -> None:
     path, feed = random_path(seed), [0.05, 0.3, 1.0][seed % 3]
-    law = parametrize(path, robot, Limits(feed, CAP, chord=20e-6), where="random")
+    law = timed(path, robot, Limits(feed, CAP, chord=20e-6))
     for share in (1e-6, 0.25, 0.5, 0.75, 1.0 - 1e-6):
-        squared = law.speed[:-1] ** 2 * (1.0 - share) + law.speed[1:] ** 2 * share
+        squared = law.squared[:-1] * (1.0 - share) + law.squared[1:] * share
         width = np.diff(law.distance)
-        u = np.diff(law.speed**2) / (2.0 * width)
+        u = np.diff(law.squared) / (2.0 * width)
         dq, ddq, curvature = derivatives(path, law.distance[:-1] + share * width)
         assert np.sqrt(squared).max() <= feed * (1.0 + 1e-6)
         assert np.hypot(u, curvature * squared).max() <= CAP * 1.001
@@ -133,36 +145,72 @@ def shortest_time(path: Path, robot: Robot, cap: float, feed: float, spacing: fl
 @pytest.mark.parametrize("seed", range(5))
 def test_the_time_is_within_half_a_percent_of_one_linear_program_over_the_whole_path(seed: int, robot: Robot) -> None:
     path = random_path(100 + seed)
-    law = parametrize(path, robot, Limits(0.6, CAP), where="random")
+    law = timed(path, robot, Limits(0.6, CAP))
     best = shortest_time(path, robot, CAP, 0.6, 1e-4)
-    assert 0.9995 * best <= law.duration <= 1.005 * best
+    assert 0.9995 * best <= law.durations[0] <= 1.005 * best
 
 
 def test_a_joint_of_line_and_arc_is_passed_without_a_stop() -> None:
     path = around(curves.start_at(slot(0.06, 0.02), 0, 0.03))
-    law = parametrize(path, ROBOT, Limits(10.0, CAP), where="slot")
+    law = timed(path, ROBOT, Limits(10.0, CAP))
     inner = (law.distance > 0.02) & (law.distance < path.total - 0.02)
-    assert law.speed[inner].min() > 0.9 * math.sqrt(CAP * 0.01)
+    assert speeds(law)[inner].min() > 0.9 * math.sqrt(CAP * 0.01)
 
 
 def test_where_the_chord_would_leave_the_path_the_motion_is_slower() -> None:
     path = around(curves.circle(np.zeros(2), 0.02))
-    free = parametrize(path, ROBOT, Limits(10.0, CAP), where="circle")
-    bound = parametrize(path, ROBOT, Limits(10.0, CAP, chord=5e-6), where="circle")
-    assert bound.speed.max() == pytest.approx(math.sqrt(0.02 * 8 * 5e-6 / 0.0025**2), rel=0.1)
-    assert bound.duration > 1.5 * free.duration
+    free = timed(path, ROBOT, Limits(10.0, CAP))
+    bound = timed(path, ROBOT, Limits(10.0, CAP, chord=5e-6))
+    assert speeds(bound).max() == pytest.approx(math.sqrt(0.02 * 8 * 5e-6 / 0.0025**2), rel=0.1)
+    assert bound.durations[0] > 1.5 * free.durations[0]
 
 
 def test_the_law_is_exact_between_gridpoints() -> None:
-    law = parametrize(straight(np.zeros(2), np.array([0.03, 0.0]), Z), ROBOT, Limits(10.0, CAP), where="line")
-    time = np.linspace(0.0, law.duration / 2.0, 50)
-    assert law.at(time) == pytest.approx(0.5 * CAP * time**2, rel=2e-3, abs=1e-9)
-    assert law.at(np.array([law.duration]))[0] == pytest.approx(0.03, abs=1e-12)
+    law = timed(straight(np.zeros(2), np.array([0.03, 0.0]), Z), ROBOT, Limits(10.0, CAP))
+    time = np.linspace(0.0, law.durations[0] / 2.0, 50)
+    assert law.at(np.zeros(50, dtype=int), time) == pytest.approx(0.5 * CAP * time**2, rel=2e-3, abs=1e-9)
+    assert law.at(np.array([0]), law.durations)[0] == pytest.approx(0.03, abs=1e-12)
 
 
-def test_a_path_without_a_time_law_is_an_error_that_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    # A row that no motion can meet: 0 u + 0 x <= -1.
-    monkeypatch.setattr(module, "_right_hand_side", lambda *_: np.full(7 + module.SIDES, -1.0))
-    with pytest.raises(InfeasibleError) as caught:
-        parametrize(straight(np.zeros(2), np.array([0.1, 0.0]), Z), ROBOT, Limits(1.0, CAP), where="contour 5")
-    assert caught.value.where == "contour 5"
+def two_moves() -> Route:
+    there, back = np.array([0.0, 0.0]), np.array([0.05, 0.0])
+    return Route.of([(straight(there, back, Z), Limits(1.0, CAP)), (straight(back, there, Z), Limits(1.0, CAP))])
+
+
+@pytest.mark.parametrize("interface", ["_by_compiled_solver", "_by_public_interface"])
+def test_a_route_without_a_time_law_is_an_error(interface: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interface == "_by_public_interface":
+        monkeypatch.setattr(module, "_profile", module._by_public_interface)
+    # Rows that no motion can meet: forwards and backwards at once.
+    monkeypatch.setattr(module, "_TOOL", module._TOOL * [1.0, 1.0, -1.0])
+    with pytest.raises(UndrivableError, match=r"of 50\.000 mm along this path") as caught:
+        parametrize(two_moves(), ROBOT)
+    assert caught.value.move == 1
+
+
+@pytest.mark.parametrize("robot", [ROBOT, WEAK], ids=["strong joints", "weak joints"])
+@pytest.mark.parametrize("seed", range(4))
+def test_both_interfaces_of_the_solver_give_the_same_speeds(seed: int, robot: Robot) -> None:
+    route = Route.of([(random_path(seed), Limits(0.3, CAP)), *[(random_path(seed + 1), Limits(1.0, CAP, 20e-6))] * 2])
+    grid = Grid.over(route, robot)
+    program = module._Program.of(grid, Rows.over(route, grid, robot), np.ones(len(grid.segment)))
+    quick, slow = module._profile(program), module._by_public_interface(program)
+    assert np.abs(quick - slow).max() <= 1e-6
+    times = [TimeLaw.of(grid.distance, program.unit * x, grid.rest).durations for x in (quick, slow)]
+    assert times[0] == pytest.approx(times[1], rel=1e-5)  # toppra gives 1e-10 of x away at every step
+
+
+def test_a_long_route_is_solved_in_slices_as_a_short_one_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    route = Route.of([(random_path(seed), Limits(0.3, CAP)) for seed in range(3)])
+    whole = parametrize(route, ROBOT)
+    monkeypatch.setattr(module, "_SLICE", 100)
+    monkeypatch.setattr(module, "_SLICES_KEPT", 1)
+    assert parametrize(route, ROBOT).squared == pytest.approx(whole.squared, abs=1e-9)
+
+
+def test_moves_in_a_route_are_run_as_each_for_itself() -> None:
+    paths = [random_path(seed) for seed in range(3)]
+    together = parametrize(Route.of([(path, Limits(0.3, CAP)) for path in paths]), ROBOT)
+    apart = [timed(path, ROBOT, Limits(0.3, CAP)).durations[0] for path in paths]
+    assert together.durations == pytest.approx(apart, rel=1e-6)
+    assert not together.squared[together.rest].any()

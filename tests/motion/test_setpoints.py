@@ -12,9 +12,12 @@ from deltacam.cutting.process import load_process
 from deltacam.errors import ProcessError
 from deltacam.geometry import curve as curves
 from deltacam.model import Block, BlockKind, Curve, Cut, Mode, Operation, Placement, Process
-from deltacam.motion.parametrize import Limits, parametrize
+from deltacam.motion.law import TimeLaw
+from deltacam.motion.parametrize import parametrize
 from deltacam.motion.path import straight
-from deltacam.motion.setpoints import Setpoints, plan_frame, plan_motion, sample
+from deltacam.motion.route import Limits, Route
+from deltacam.motion.sample import sample
+from deltacam.motion.setpoints import Setpoints, plan_frame, plan_motion
 from deltacam.robot.reader import load_robot
 from tests.strategies import contour, rectangle, slot
 
@@ -91,27 +94,28 @@ def test_every_cut_tick_lies_on_the_kerf_path() -> None:
             assert here[0].distance(here[-1]) < 1e-12
 
 
+def run_straight(start: float, end: float) -> tuple[TimeLaw, np.ndarray]:
+    path = straight(np.array([start, 0.0]), np.array([end, 0.0]), PLACE.z)
+    law = parametrize(Route.of([(path, Limits(10.0, 23.0))]), ROBOT)
+    (q,) = sample(path, law, ROBOT)
+    return law, ROBOT.forward(q)[:, 0]
+
+
 def test_a_move_ends_on_a_tick_and_is_stretched_by_less_than_one() -> None:
-    path = straight(np.zeros(2), np.array([0.05, 0.0]), PLACE.z)
-    law = parametrize(path, ROBOT, Limits(10.0, 23.0), where="line")
-    q = sample(path, law, ROBOT)
-    assert law.duration <= len(q) * TICK < law.duration + TICK
-    x = ROBOT.forward(q)[:, 0]
+    law, x = run_straight(0.0, 0.05)
+    assert law.durations[0] <= len(x) * TICK < law.durations[0] + TICK
     assert x[0] == pytest.approx(0.0, abs=1e-12)
     assert 0.0 < 0.05 - x[-1] <= 0.5 * 23.0 * TICK**2 * 1.001
 
 
 def test_the_stretch_is_the_same_all_along() -> None:
-    path = straight(np.array([-0.025, 0.0]), np.array([0.025, 0.0]), PLACE.z)
-    law = parametrize(path, ROBOT, Limits(10.0, 23.0), where="line")
-    x = ROBOT.forward(sample(path, law, ROBOT))[:, 0]
+    _, x = run_straight(-0.025, 0.025)
     # The motion is the same forwards and backwards, and so are the ticks, with the end as the tick after the last.
     assert np.append(x, 0.025) == pytest.approx(-np.append(x, 0.025)[::-1], abs=2e-6)
 
 
 def test_a_move_shorter_than_a_tick_still_takes_one() -> None:
-    path = straight(np.zeros(2), np.array([2e-6, 0.0]), PLACE.z)
-    assert len(sample(path, parametrize(path, ROBOT, Limits(10.0, 23.0), where=""), ROBOT)) == 1
+    assert len(run_straight(0.0, 2e-6)[1]) == 1
 
 
 ENGRAVING = replace(PROCESS, engrave_feed=0.08, engrave_power=0.15)

@@ -1,0 +1,72 @@
+"""How a route is run: its time law, the setpoint at every tick, and what the user wants to know of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from deltacam.model import Array
+from deltacam.motion.law import TimeLaw
+from deltacam.motion.parametrize import solve
+from deltacam.motion.route import Grid, Route
+from deltacam.motion.rows import Rows
+from deltacam.motion.sample import chord_deviation, sample
+
+if TYPE_CHECKING:
+    from deltacam.robot.robot import Robot
+
+_ROUNDS: Final = 20
+_STRICTER: Final = 0.995
+
+
+class Run(NamedTuple):
+    """How one move is run.
+
+    Attributes:
+        q: (N, 3) rad, the setpoint at every tick but that at which it ends.
+        duration: s, before it is stretched to end on a tick.
+    """
+
+    q: Array
+    duration: float
+
+
+def run(route: Route, robot: Robot) -> list[Run]:
+    """The fastest motion along every move of a route from rest to rest.
+
+    Raises:
+        UndrivableError: a move has none.
+        RobotError: the path leaves the reach of the robot.
+    """
+    grid = Grid.over(route, robot)
+    rows = Rows.over(route, grid, robot)
+    slowness = np.ones(len(rows.width))
+    for _ in range(_ROUNDS):
+        law = solve(grid, rows, slowness)
+        setpoints = sample(route.path, law, robot)
+        slower = _slower(route, grid, law, robot, setpoints)
+        if (slower == 1.0).all():
+            break
+        slowness *= slower
+    return [Run(*one) for one in zip(setpoints, law.durations.tolist(), strict=True)]
+
+
+def _slower(route: Route, grid: Grid, law: TimeLaw, robot: Robot, setpoints: tuple[Array, ...]) -> Array:
+    """By which factor the motion in every interval must be slower to stay within the chord tolerance, (I,)."""
+    factor = np.ones(len(grid.segment))
+    if not np.isfinite(route.chord).any():
+        return factor
+    ends = grid.rest[1:] - 1
+    last, _, _, _ = route.path.evaluate(grid.segment[ends], grid.end[ends])
+    off, place = chord_deviation(route.path, law, robot, setpoints, robot.inverse(last))
+    interval = np.clip(np.searchsorted(grid.distance, place, side="right") - 1, 0, len(factor) - 1)
+    allowed = route.chord[grid.segment[interval]]
+    over = np.flatnonzero(off > allowed)
+    # The lag of a tick comes from the way that the tool makes in it: all intervals of that way are slowed down.
+    before = np.searchsorted(grid.distance, place[np.maximum(over - 1, 0)], side="right") - 1
+    after = np.searchsorted(grid.distance, place[np.minimum(over + 1, len(place) - 1)], side="left")
+    for tick, first, end in zip(over.tolist(), before.tolist(), after.tolist(), strict=True):
+        needed = np.sqrt(allowed[tick] / off[tick]) * _STRICTER
+        factor[first:end] = np.minimum(factor[first:end], needed)
+    return factor

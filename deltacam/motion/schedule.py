@@ -1,0 +1,127 @@
+"""The setpoints of many moves: planned in chunks of bounded size, on several processes where that pays.
+
+A chunk is planned as one route, so that what is done for every gridpoint is done for thousands at a time. Chunks are
+the same for any number of processes, and so are the setpoints.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from deltacam.errors import InfeasibleError
+from deltacam.motion.parametrize import UndrivableError, load_solver
+from deltacam.motion.path import Path
+from deltacam.motion.route import SPACING, Limits, Route
+from deltacam.motion.run import Run, run
+
+if TYPE_CHECKING:
+    from deltacam.robot.robot import Robot
+
+CHUNK: Final = 20_000
+"""About how many gridpoints are planned at a time; each takes about 3 kB."""
+
+_PER_SEGMENT: Final = 10
+_PAYS: Final = 6
+
+
+class Move(NamedTuple):
+    """One path to be run from rest to rest; ``where`` names it in an error."""
+
+    path: Path
+    limits: Limits
+    where: str
+
+
+def schedule(
+    moves: Sequence[Move],
+    robot: Robot,
+    *,
+    jobs: int | None = None,
+    progress: Callable[[int], None] = lambda _done: None,
+) -> list[Run]:
+    """How every move is run.
+
+    Args:
+        moves: at one height.
+        robot: the machine.
+        jobs: processes, >= 1; None takes as many as there are cores, where there is enough to do.
+        progress: is told how many moves are done.
+
+    Raises:
+        InfeasibleError: a move has no time law within the limits.
+        RobotError: a move leaves the reach.
+    """
+    chunks = list(_chunks(moves))
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    processes = min(jobs or (cores if len(chunks) >= _PAYS else 1), len(chunks))
+    runs: list[Run] = []
+    with _workers(processes) as run_all:
+        for found in run_all(partial(_run_chunk, robot), chunks):
+            runs += found
+            progress(len(runs))
+    return runs
+
+
+def _chunks(moves: Sequence[Move]) -> Iterator[list[Move]]:
+    """Consecutive moves that have about `CHUNK` gridpoints; at least one move each."""
+    chunk: list[Move] = []
+    points = 0.0
+    for move in moves:
+        chunk.append(move)
+        points += move.path.total / SPACING + _PER_SEGMENT * len(move.path.length)
+        if points >= CHUNK:
+            yield chunk
+            chunk, points = [], 0.0
+    if chunk:
+        yield chunk
+
+
+def _run_chunk(robot: Robot, moves: Sequence[Move]) -> list[Run]:
+    route = Route.of([(move.path, move.limits) for move in moves])
+    try:
+        return run(route, robot)
+    except UndrivableError as problem:
+        raise InfeasibleError(problem.what, where=moves[problem.move].where, hint=problem.hint) from problem
+
+
+@contextmanager
+def _workers(processes: int) -> Iterator[Callable[..., Iterator[list[Run]]]]:
+    """A ``map`` that runs in this process, or in several."""
+    if processes <= 1:
+        yield map
+        return
+    load_solver()  # once, here, rather than in every process that is forked
+
+    # A fork is ready at once, but only safe where no other thread holds a lock.
+    forked = "fork" in multiprocessing.get_all_start_methods() and threading.active_count() == 1
+    context = multiprocessing.get_context("fork" if forked else "spawn")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of fork beside the idle threads of the linear algebra
+        with ProcessPoolExecutor(processes, mp_context=context, initializer=_start_worker) as pool:
+            try:
+                yield pool.map
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+
+
+def _start_worker() -> None:
+    """Leave an interrupt to the process that waits, and end with it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: multiprocessing.process.BaseProcess) -> None:
+    parent.join()
+    os._exit(1)
