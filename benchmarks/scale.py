@@ -50,7 +50,7 @@ def circle(radius: float, x: float = 0.0, y: float = 0.0) -> Shape:
 def polygon(rng: np.random.Generator, count: int) -> Shape:
     """An irregular one about the origin, within a radius of 1."""
     angles = 2.0 * pi * (np.arange(count) + rng.uniform(-0.3, 0.3, count)) / count
-    return [(r * cos(a), r * sin(a), 0.0) for a, r in zip(angles, rng.uniform(0.65, 1.0, count), strict=True)]
+    return [(r * cos(a), r * sin(a), 0.0) for a, r in zip(angles, rng.uniform(0.5, 1.0, count), strict=True)]
 
 
 def plate(rng: np.random.Generator) -> list[Shape]:
@@ -70,7 +70,7 @@ def part(rng: np.random.Generator) -> list[Shape]:
     elif kind < 0.8:
         shapes = [slot(2.0, rng.uniform(0.3, 0.8))]
     else:
-        shapes = [polygon(rng, int(rng.integers(3, 9)))]
+        shapes = [polygon(rng, int(rng.integers(3, 13)))]
     angle = rng.uniform(0.0, 2.0 * pi)
     return [[(cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y, b) for x, y, b in s] for s in shapes]
 

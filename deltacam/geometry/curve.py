@@ -152,22 +152,42 @@ def flatten(curve: Curve, sagitta: float) -> tuple[Array, IntArray]:
         points (K, 2) m and the segment that each belongs to, (K,); a closed curve does not repeat its first point, an
         open one ends with its last point.
     """
-    turn = np.abs(turns(curve))
-    radius = np.divide(lengths(curve), turn, out=np.full_like(turn, np.inf), where=turn > 0.0)
+    step, turn = chords(curve), turns(curve)
+    half = 0.5 * np.abs(turn)
+    # np.sinc(x / pi) is sin(x) / x, exact at 0.
+    length_of = np.hypot(*step.T) / np.sinc(half / np.pi)
+    radius = np.divide(length_of, 2.0 * half, out=np.full_like(half, np.inf), where=half > 0.0)
     # A chord of angle a has the sagitta r (1 - cos(a / 2)); at least a square is left of a circle.
     rise = np.divide(sagitta, radius, out=np.zeros_like(radius), where=radius > 0.0)
-    step = np.minimum(2.0 * np.arccos(np.clip(1.0 - rise, -1.0, 1.0)), 0.5 * np.pi)
-    pieces = np.ceil(np.divide(turn, step, out=np.ones_like(turn), where=step > 0.0)).astype(np.int64)
+    most = np.minimum(2.0 * np.arccos(np.clip(1.0 - rise, -1.0, 1.0)), 0.5 * np.pi)
+    pieces = np.ceil(np.divide(2.0 * half, most, out=np.ones_like(half), where=most > 0.0)).astype(np.int64)
     pieces = np.maximum(pieces, 1)
     segment = np.repeat(np.arange(len(turn)), pieces)
     index = np.arange(len(segment)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    distance = lengths(curve)[segment] * index / pieces[segment]
-    points, _ = evaluate(curve, segment, distance)
-    points[index == 0] = curve.starts
+    points = curve.starts[segment]
+    inner = np.flatnonzero(index)
+    points[inner] += _part_of_chord(step, turn, segment[inner], index[inner] / pieces[segment[inner]])
     if not curve.closed:
         points = np.concatenate([points, curve.points[-1:]])
         segment = np.append(segment, len(turn) - 1)
     return points, segment
+
+
+def _part_of_chord(step: Array, turn: Array, segment: IntArray, share: Array) -> Array:
+    """The vectors to the points that are ``share`` of the way along arcs, (N, 2) m.
+
+    Args:
+        step: the chord of each segment, (M, 2) m.
+        turn: of each segment, (M,) rad.
+        segment: which of them, (N,), none of them straight.
+        share: (N,) from 0 to 1.
+    """
+    whole, part = turn[segment], share * turn[segment]
+    # The chord to a point of the arc that has turned by b leaves the whole chord by (turn - b) / 2 to the right.
+    size, swing = np.sin(0.5 * part) / np.sin(0.5 * whole), 0.5 * (part - whole)
+    cos, sin = size * np.cos(swing), size * np.sin(swing)
+    x, y = step[segment].T
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
 
 
 def bounds(curve: Curve) -> tuple[float, float, float, float]:

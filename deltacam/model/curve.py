@@ -46,4 +46,4 @@ class Curve:
     @property
     def ends(self) -> Array:
         """The last point of every segment, (M, 2) m."""
-        return np.roll(self.points, -1, axis=0) if self.closed else self.points[1:]
+        return np.concatenate([self.points[1:], self.points[:1]]) if self.closed else self.points[1:]

@@ -242,9 +242,11 @@ def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tupl
 
 def _in_rounded_corner(target: Target, points: Array, distance: Array, near: float) -> np.ndarray:
     """Which ``points`` (M, 2) lie so close to a sharp corner that rounding it may leave them at ``distance``, (M,)."""
+    if not len(points):
+        return np.zeros(0, dtype=bool)
     found = [sharp_corners(ring, closed=target.contour.curve.closed) for ring in target.rings]
     corners = np.concatenate([corner for corner, _ in found])
-    if not len(corners) or not len(points):
+    if not len(corners):
         return np.zeros(len(points), dtype=bool)
     half = np.minimum(np.concatenate([turn for _, turn in found]), _SHARPEST) / 2.0
     away, corner = cKDTree(corners).query(points)

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 
 from deltacam.geometry import curve as curves
+from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BlockKind, Drawing, IntArray, Operation
 from deltacam.plain import plain
 from deltacam.program.program import Program
@@ -149,12 +150,12 @@ class _View:
 
     @classmethod
     def around(cls, evidence: Evidence, drawing: Drawing | None) -> _View:
-        boxes = [curves.bounds(contour.curve) for contour in drawing.contours] if drawing else []
+        boxes = Pack.of(contour.curve for contour in drawing.contours).bounds() if drawing else np.zeros((0, 4))
         subject = _bands(evidence) != _RAPID
         places = (
             evidence.sheet[np.append(subject, False) | np.append(False, subject)] if len(subject) else evidence.sheet
         )
-        part = np.array(boxes).reshape(-1, 2) if boxes else places if len(places) else np.zeros((1, 2))
+        part = boxes.reshape(-1, 2) if len(boxes) else places if len(places) else np.zeros((1, 2))
         width, depth = np.ptp(part, axis=0)
         seen, sheet = np.vstack([part, places]), to_sheet(evidence.program, _sheet_edge(evidence.robot.workspace))
         if _scale(seen) > _SHEET_SHOWN * _scale(np.vstack([seen, sheet])):
@@ -163,7 +164,7 @@ class _View:
         low, extent, scale = seen.min(axis=0), np.ptp(seen, axis=0), _scale(seen)
         height = max(float(extent[1]) * scale, 120.0) + 2 * _MARGIN
         x, y = ((_WIDTH, height) + np.array((-1.0, 1.0)) * (2.0 * low + extent) * scale) / 2.0
-        caption = f"{'part' if boxes else 'path'} {to_mm(width):.2f} \u00d7 {to_mm(depth):.2f} mm"
+        caption = f"{'part' if len(boxes) else 'path'} {to_mm(width):.2f} \u00d7 {to_mm(depth):.2f} mm"
         return cls(caption, _ERROR * max(width, depth, 1e-3), scale, height, (float(x), float(y)), sheet)
 
     def path(self, lines: Sequence[Array], *, width: float, style: str) -> str:

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from deltacam.geometry.curve import bounds
+from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BlockKind, Check, Drawing, Operation
 from deltacam.verification.evidence import KINDS, MOVING_KINDS, Evidence
 from deltacam.verification.measure import DIFFERENCES
@@ -45,7 +45,7 @@ def summarize(evidence: Evidence, drawing: Drawing | None, checks: Sequence[Chec
         figures["unit"] = drawing.unit_in_words
         figures["conversion_error_um"] = drawing.conversion_error * 1e6
     if drawing and drawing.contours:
-        boxes = np.array([bounds(contour.curve) for contour in drawing.contours])
+        boxes = Pack.of(contour.curve for contour in drawing.contours).bounds()
         figures["contours_drawn"] = len(drawing.contours)
         figures["part_size_mm"] = _size(boxes.reshape(-1, 2))
     return figures
