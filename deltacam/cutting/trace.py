@@ -102,7 +102,7 @@ def trace_ring(source: Source, ring: Array) -> Curve:
 
 def _edges(points: Array) -> Array:
     """The edges of a closed polyline as an array of line strings, (K,)."""
-    return np.asarray(shapely.linestrings(np.stack([points, np.roll(points, -1, axis=0)], axis=1)))
+    return np.asarray(shapely.linestrings(np.stack([points, np.concatenate([points[1:], points[:1]])], axis=1)))
 
 
 def _nearest(source: Source, points: Array) -> tuple[IntArray, Array, Array]:
@@ -202,10 +202,10 @@ def _matches(source: Source, traced: Curve, ring: Array) -> bool:
     flat, _ = curves.flatten(traced, FIT / 4.0)
     middle = 0.5 * (flat + np.roll(flat, -1, axis=0))
     off = np.abs(_nearest(source, np.concatenate([flat, middle]))[2] - abs(source.shift)).max()
-    return bool(off <= FIT and max(_farthest(traced.points, ring), _farthest(ring, flat)) <= _SEARCH)
+    return bool(off <= FIT and _all_near(traced.points, ring) and _all_near(ring, flat))
 
 
-def _farthest(points: Array, ring: Array) -> float:
-    """The largest distance of any of ``points`` (N, 2) m from the closed polyline ``ring`` (K, 2) m."""
-    tree = shapely.STRtree(_edges(ring))
-    return float(tree.query_nearest(shapely.points(points), return_distance=True, all_matches=False)[1].max())
+def _all_near(points: Array, ring: Array) -> bool:
+    """Whether all of the ``points`` (N, 2) m are within ``_SEARCH`` of the closed polyline ``ring`` (K, 2) m."""
+    near, _ = shapely.STRtree(_edges(ring)).query(shapely.points(points), predicate="dwithin", distance=_SEARCH)
+    return len(np.unique(near)) == len(points)
