@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from deltacam.model import Array, Check, Contour, Drawing, IntArray, Operation
 from deltacam.program.program import Program
-from deltacam.verification.evidence import Evidence, Run, to_sheet, tool_points
+from deltacam.verification.evidence import CHUNK, Evidence, Run, to_sheet, tool_points
 from deltacam.verification.interpolate import between, motion
 from deltacam.verification.kerf_path import ACCURACY, rings, sharp_corners
 from deltacam.verification.measure import at_most
@@ -115,11 +115,12 @@ def deviation_between(comparison: Comparison) -> Check:
     limit = process.tolerance + process.chord_tolerance
     rows = [_ticks(target.runs, including_end=False) for target in comparison.targets]
     cut = np.concatenate([np.empty(0, dtype=np.int64), *rows])
-    points, (row, why) = tool_points(evidence.robot, between(evidence, cut, 0.5))
-    if why:
-        return Check("deviation between ticks", False, tick=int(cut[row]), where=why)
     places = np.zeros((len(evidence.sheet), 2))
-    places[cut] = to_sheet(evidence.program, points)
+    for some in (cut[first : first + CHUNK] for first in range(0, len(cut), CHUNK)):
+        points, (row, why) = tool_points(evidence.robot, between(evidence, some, 0.5))
+        if why:
+            return Check("deviation between ticks", False, tick=int(some[row]), where=why)
+        places[some] = to_sheet(evidence.program, points)
     return _worst_distance(comparison, "deviation between ticks", rows, places, limit)
 
 

@@ -26,7 +26,9 @@ WORKING_KINDS: Final = {BlockKind.CUT: Operation.CUT, BlockKind.ENGRAVE: Operati
 MOVING_KINDS: Final = LASER_KINDS - {BlockKind.PIERCE}
 """The kinds of block that move along the sheet with the laser on."""
 
-_CHUNK: Final = 65_536  # rows at a time, which bounds the memory of the kinematics
+CHUNK: Final = 65_536
+"""Rows at a time, which bounds the memory of the kinematics."""
+
 _NO_BLOCK: Final = Block(BlockKind.RAPID, 0, 0)  # of a row whose block does not exist; the laser must be off there
 
 
@@ -109,8 +111,8 @@ def tool_points(robot: Robot, q: Array) -> tuple[Array, tuple[int, str]]:
     Where a row has none there are no points at all, (0, 3), so that nothing can be concluded from half of them.
     """
     parts = []
-    for first in range(0, len(q), _CHUNK):
-        chunk = q[first : first + _CHUNK]
+    for first in range(0, len(q), CHUNK):
+        chunk = q[first : first + CHUNK]
         try:
             parts.append(robot.forward(chunk))
         except RobotError as problem:
@@ -120,7 +122,7 @@ def tool_points(robot: Robot, q: Array) -> tuple[Array, tuple[int, str]]:
 
 def in_chunks(measure: Callable[[Array], Array], points: Array) -> Array:
     """``measure`` of ``points`` (N, ...), a bounded number at a time; it returns (n,) for n points."""
-    parts = [measure(points[first : first + _CHUNK]) for first in range(0, len(points), _CHUNK)]
+    parts = [measure(points[first : first + CHUNK]) for first in range(0, len(points), CHUNK)]
     return np.concatenate([np.empty(0), *parts])
 
 

@@ -226,14 +226,14 @@ def _figures(summary: Mapping[str, Any], prefix: str = "") -> list[tuple[str, st
 def _charts(evidence: Evidence) -> str:
     """Joint speed, joint acceleration and tool speed over time, each with its limits."""
     q, joints, rate, seconds = evidence.program.q, evidence.robot.joints, evidence.rate, evidence.program.duration
-    shares = {
-        "Joint speed": 100.0 * np.diff(q, axis=0) * rate / joints.max_speed,
-        "Joint acceleration": 100.0 * np.diff(q, n=2, axis=0) * rate**2 / joints.max_acceleration,
-    }
-    charts = [
-        _chart(name, "% of limit", [(f"joint {i + 1}", share[:, i], (100.0, 0.0, -100.0)) for i in range(3)], seconds)
-        for name, share in shares.items()
-    ]
+    charts = []
+    for name, order, limits in (
+        ("Joint speed", 1, joints.max_speed),
+        ("Joint acceleration", 2, joints.max_acceleration),
+    ):
+        shares = [100.0 * np.diff(q[:, i], n=order) * rate**order / limits[i] for i in range(3)]
+        strips = [(f"joint {i + 1}", share, (100.0, 0.0, -100.0)) for i, share in enumerate(shares)]
+        charts.append(_chart(name, "% of limit", strips, seconds))
     if len(evidence.tool):
         limit, feed = to_mm(evidence.robot.tool.max_speed), to_mm(evidence.program.process.feed)
         tool = (f"feed {_number(feed)}", tool_speeds(evidence), (limit, 0.0, feed))

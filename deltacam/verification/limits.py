@@ -8,7 +8,7 @@ import numpy as np
 
 from deltacam.model import Array, BlockKind, Check
 from deltacam.verification.evidence import MOVING_KINDS, Evidence
-from deltacam.verification.measure import DIFFERENCES, ROUNDING_DEG, at_most, per_joint
+from deltacam.verification.measure import DIFFERENCES, ROUNDING_DEG, at_most, length, per_joint
 
 _ROUNDED: Final = 0.5e-12  # rad; how far the 12 decimals of the file may move a setpoint
 _NO_FEED: Final = 1e-9  # mm/s; stands for a limit that the process does not give
@@ -26,14 +26,18 @@ def joint_range(evidence: Evidence) -> Check:
 
 def joint_speed(evidence: Evidence) -> Check:
     """First differences of the setpoints."""
-    speed = np.abs(np.diff(evidence.program.q, axis=0)) * evidence.rate
+    speed = np.diff(evidence.program.q, axis=0)
+    np.abs(speed, out=speed)
+    speed *= evidence.rate
     limits = evidence.robot.joints.max_speed
     return per_joint(evidence, "joint speed", speed, limits, "deg/s", ticks=np.arange(len(speed)))
 
 
 def joint_acceleration(evidence: Evidence) -> Check:
     """Second differences of the setpoints, the ends held, so that a start or an end at speed counts."""
-    acceleration = np.abs(_held_differences(evidence.program.q, 2)) * evidence.rate**2
+    acceleration = _held_differences(evidence.program.q, 2)
+    np.abs(acceleration, out=acceleration)
+    acceleration *= evidence.rate**2
     limits = evidence.robot.joints.max_acceleration
     ticks = np.arange(len(acceleration))
     return per_joint(evidence, "joint acceleration", acceleration, limits, "deg/s2", ticks=ticks)
@@ -45,8 +49,11 @@ def joint_jerk(evidence: Evidence) -> Check:
     What rounding may have added, 1 + 3 + 3 + 1 times `_ROUNDED`, is taken off: 0.015 deg/s3 at 400 Hz, but 229 at 10
     kHz. A robot without a limit passes with the largest jerk of any joint.
     """
-    differences = np.abs(_held_differences(evidence.program.q, 3))
-    jerk = np.maximum(differences - 8.0 * _ROUNDED, 0.0) * evidence.rate**3
+    jerk = _held_differences(evidence.program.q, 3)
+    np.abs(jerk, out=jerk)
+    jerk -= 8.0 * _ROUNDED
+    np.maximum(jerk, 0.0, out=jerk)
+    jerk *= evidence.rate**3
     ticks = np.maximum(np.arange(len(jerk)) - 1, 0)  # of the former of the two rows in the middle
     return per_joint(evidence, "joint jerk", jerk, evidence.robot.joints.max_jerk, "deg/s3", ticks=ticks)
 
@@ -59,7 +66,7 @@ def tool_speed(evidence: Evidence) -> Check:
 
 def tool_acceleration(evidence: Evidence) -> Check:
     """Second differences of the tool's positions, the ends held."""
-    size = np.linalg.norm(_held_differences(evidence.tool, 2), axis=1) * evidence.rate**2
+    size = length(_held_differences(evidence.tool, 2)) * evidence.rate**2
     limit = evidence.robot.tool.max_acceleration * DIFFERENCES
     return at_most(evidence, "tool acceleration", size, limit, "m/s2")
 
@@ -90,7 +97,7 @@ def rest_at_ends(evidence: Evidence) -> Check:
 
 def _speeds(evidence: Evidence) -> Array:
     """The mean speed from every tick to the next, (N - 1,) m/s."""
-    return np.asarray(np.linalg.norm(np.diff(evidence.tool, axis=0), axis=1) * evidence.rate)
+    return length(np.diff(evidence.tool, axis=0)) * evidence.rate
 
 
 def _held_differences(values: Array, order: int) -> Array:

@@ -66,7 +66,7 @@ def per_joint(
     """
     if not len(values):
         return Check(name, True, limit=float(np.degrees(min(limits)) * DIFFERENCES) if limits else None, unit=unit)
-    joint = int(np.argmax((values / limits if limits else values).max(axis=0)))
+    joint = int(np.argmax(values.max(axis=0) / (limits or 1.0)))
     limit = float(np.degrees(limits[joint]) * DIFFERENCES) if limits else None
     return at_most(evidence, name, np.degrees(values[:, joint]), limit, unit, ticks=ticks, note=f"joint {joint + 1}")
 
@@ -78,3 +78,11 @@ def none_of(evidence: Evidence, name: str, wrong: BoolArray, unit: str = "ticks"
         return Check(name, True, 0.0, 0.0, unit)
     first = int(rows[0])
     return Check(name, False, float(len(rows)), 0.0, unit, first, evidence.place(first))
+
+
+def length(vectors: Array) -> Array:
+    """How long the ``vectors`` (N, 3) are, (N,), without an array of their size on the way."""
+    square = vectors[:, 0] * vectors[:, 0]
+    for column in (vectors[:, 1], vectors[:, 2]):
+        square += column * column
+    return np.asarray(np.sqrt(square, out=square))

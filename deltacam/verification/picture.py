@@ -21,6 +21,7 @@ from deltacam.program.program import Program
 from deltacam.robot.workspace import Workspace
 from deltacam.units import to_mm, to_um
 from deltacam.verification.evidence import LASER_KINDS, Evidence, gather, to_sheet
+from deltacam.verification.measure import length
 from deltacam.verification.thin import thin
 
 _WIDTH: Final = 900.0
@@ -85,7 +86,7 @@ def shown(text: str, *, longest: int = 200) -> str:
 
 def tool_speeds(evidence: Evidence) -> Array:
     """The tool's speed from every setpoint to the next, (N - 1,) mm/s."""
-    return np.asarray(to_mm(evidence.rate) * np.linalg.norm(np.diff(evidence.tool, axis=0), axis=1))
+    return to_mm(evidence.rate) * length(np.diff(evidence.tool, axis=0))
 
 
 def _bands(evidence: Evidence) -> IntArray:
@@ -241,10 +242,10 @@ def _stretches(xy: Array, band: IntArray, colour: IntArray, reach: float) -> tup
     """
     subject = band == _SUBJECT
     usual = np.median(colour[subject]) if subject.any() else 0.0
-    length = np.hypot(*np.diff(xy, axis=0).T)
+    steps = np.hypot(*np.diff(xy, axis=0).T)
     first, kind = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
     for doubling in range(12):
-        cell = np.floor((np.cumsum(length) - length) / (reach * 2.0**doubling))
+        cell = np.floor((np.cumsum(steps) - steps) / (reach * 2.0**doubling))
         first = np.flatnonzero((np.diff(cell, prepend=-1.0) != 0.0) | (np.diff(band, prepend=-1) != 0))
         slow, fast = np.minimum.reduceat(colour, first), np.maximum.reduceat(colour, first)
         kind = np.where(subject[first], np.where(fast - usual > usual - slow, fast, slow), band[first] - _SUBJECT)

@@ -10,7 +10,7 @@ import numpy as np
 from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BlockKind, Check, Drawing, Operation
 from deltacam.verification.evidence import KINDS, MOVING_KINDS, Evidence
-from deltacam.verification.measure import DIFFERENCES
+from deltacam.verification.measure import DIFFERENCES, length
 
 _SHARES: Final = (
     "joint speed",
@@ -70,7 +70,7 @@ def _times(evidence: Evidence) -> dict[str, float]:
 def _lengths(evidence: Evidence) -> dict[str, Any]:
     if not len(evidence.tool):
         return {}
-    steps = np.linalg.norm(np.diff(evidence.tool, axis=0), axis=1)
+    steps = length(np.diff(evidence.tool, axis=0))
     working = evidence.is_kind(MOVING_KINDS)[:-1]
     engraving = evidence.is_kind(frozenset({BlockKind.ENGRAVE}))[:-1]
     rapid = evidence.is_kind(frozenset({BlockKind.RAPID}))[:-1]
