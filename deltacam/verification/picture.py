@@ -22,7 +22,7 @@ from deltacam.robot.workspace import Workspace
 from deltacam.units import to_mm, to_um
 from deltacam.verification.evidence import LASER_KINDS, Evidence, gather, to_sheet
 from deltacam.verification.measure import length
-from deltacam.verification.thin import thin
+from deltacam.verification.thin import thin_lines
 
 _WIDTH: Final = 900.0
 _MARGIN: Final = 36.0
@@ -172,15 +172,10 @@ class _View:
         """A path of polylines (K, 2) m as relative moves, without the points that it can spare."""
         if not lines:
             return ""
-        points, last = np.vstack(lines), np.cumsum([len(line) for line in lines]) - 1
-        fixed = np.zeros(len(points), dtype=bool)
-        fixed[0] = fixed[last] = fixed[last[:-1] + 1] = True
-        kept = np.flatnonzero(thin(points, fixed, self.error))
-        grains = np.rint(to_um(1.0) * points[kept]).astype(np.int64)
-        way = np.diff(grains, axis=0, prepend=[[0, 0]])
-        moves = "".join(
-            "m" + " ".join(map(str, line.ravel())) for line in np.split(way, np.searchsorted(kept, last[:-1] + 1))
-        )
+        thinned = thin_lines(lines, self.error)
+        grains = np.rint(to_um(1.0) * np.vstack(thinned)).astype(np.int64)
+        way, last = np.diff(grains, axis=0, prepend=[[0, 0]]), np.cumsum([len(line) for line in thinned])
+        moves = "".join("m" + " ".join(map(str, line.ravel())) for line in np.split(way, last[:-1]))
         (x, y), k = self.origin, self.per_metre * 1e-6
         place = f'transform="translate({x:.3f} {y:.3f}) scale({k:.9g} {-k:.9g})"'
         return f'<path {place} {style} stroke-width="{width / k:.4g}" d="{moves.replace(" -", "-")}"/>'

@@ -2,9 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final
+
 import numpy as np
 
 from deltacam.model import Array, BoolArray
+
+_BATCH: Final = 65_536  # points at a time, which bounds the memory; one line is never split
+
+
+def thin_lines(lines: Sequence[Array], tolerance: float) -> list[Array]:
+    """The polylines, (K, 2) m each, without the points that they can spare within ``tolerance`` m; ends stay."""
+    found: list[Array] = []
+    counts = np.cumsum([len(line) for line in lines])
+    batch = counts // _BATCH
+    for first, last in pairwise([*np.flatnonzero(np.diff(batch, prepend=-1)).tolist(), len(lines)]):
+        points, end = np.vstack(lines[first:last]), counts[first:last] - counts[first] + len(lines[first]) - 1
+        fixed = np.zeros(len(points), dtype=bool)
+        fixed[0] = fixed[end] = fixed[end[:-1] + 1] = True
+        kept = np.flatnonzero(thin(points, fixed, tolerance))
+        found += np.split(points[kept], np.searchsorted(kept, end[:-1] + 1))
+    return found
 
 
 def thin(points: Array, fixed: BoolArray, tolerance: float) -> BoolArray:

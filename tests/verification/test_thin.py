@@ -3,11 +3,13 @@
 import itertools
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from shapely import LineString, Point
 
+from deltacam.verification import thin as module
 from deltacam.verification.thin import thin
 
 
@@ -35,3 +37,16 @@ def test_thinning_leaves_only_the_ends_of_a_straight_line() -> None:
     fixed = np.zeros(1000, dtype=bool)
     fixed[[0, -1]] = True
     assert np.flatnonzero(thin(way, fixed, 1e-9)).tolist() == [0, 999]
+
+
+@pytest.mark.parametrize("batch", [1, 50, 10_000])
+def test_lines_are_thinned_as_if_each_were_alone(batch: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_BATCH", batch)
+    rng = np.random.default_rng(1)
+    lines = [rng.uniform(size=(count, 2)) for count in (2, 30, 2, 100, 7, 60, 2)]
+    found = module.thin_lines(lines, 0.3)
+    for line, thinned in zip(lines, found, strict=True):
+        fixed = np.zeros(len(line), dtype=bool)
+        fixed[[0, -1]] = True
+        assert thinned.tolist() == line[thin(line, fixed, 0.3)].tolist()
+    assert module.thin_lines([], 0.3) == []
