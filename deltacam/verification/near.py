@@ -40,21 +40,21 @@ class Lines:
         parts = [_subdivide(loop, spacing) for loop in loops]
         counts = np.array([len(part) - 1 for part in parts])
         self._starts = np.concatenate([part[:-1] for part in parts])
-        self._ends = np.concatenate([part[1:] for part in parts])
+        ends = np.concatenate([part[1:] for part in parts])
         # Samples are the starts of the pieces, so that the end of an open line needs one of its own.
         first = np.repeat(np.cumsum(counts) - counts, counts)
         last = first + np.repeat(counts, counts) - 1
         here = np.arange(len(self._starts))
-        self._before = np.where(here > first, here - 1, last if closed else here)
+        self._before = np.where(here > first, here - 1, last if closed else here).astype(np.int32)
         self._extra = np.unique(last)
-        step = self._ends - self._starts
+        step = ends - self._starts
         square = step[:, 0] ** 2 + step[:, 1] ** 2
-        self._pieces = (*self._starts.T.copy(), *step.T.copy(), np.divide(1.0, square, out=square, where=square > 0.0))
+        self._pieces = (*self._starts.T, *step.T, np.divide(1.0, square, out=square, where=square > 0.0))
         self.samples, self.share = self._starts, np.hypot(*step.T)
         if not closed:
             half = 0.5 * self.share[self._extra]
             self.share[self._extra] = half
-            self.samples = np.concatenate([self._starts, self._ends[self._extra]])
+            self.samples = np.concatenate([self._starts, ends[self._extra]])
             self.share = np.concatenate([self.share, half])
         # Samples of a line come in order, so that a tree by middles is as good as one by medians, and sooner built.
         self._tree = cKDTree(self.samples, balanced_tree=False, compact_nodes=False)
@@ -91,7 +91,8 @@ class Lines:
 
     def _exact(self, points: Array) -> Array:
         if self._lines is None:
-            self._lines = shapely.STRtree(shapely.linestrings(np.stack([self._starts, self._ends], axis=1)))
+            ends = self._starts + np.stack(self._pieces[2:4], axis=1)
+            self._lines = shapely.STRtree(shapely.linestrings(np.stack([self._starts, ends], axis=1)))
         _, piece = self._lines.query_nearest(shapely.points(points), all_matches=False)
         return self._to_piece(points, piece)
 
