@@ -32,7 +32,9 @@ _NEWTON_STEPS: Final = 8
 _CONVERGED: Final = 1e-10
 _SAME: Final = 1e-10
 _EDGES: Final = np.array([0.0, RAMP, 1.0 - RAMP, 1.0])
-_SAMPLES: Final = np.array([0.2, 0.4, 0.6, 0.8, 1.0])  # of each clothoid
+_SAMPLES: Final = np.arange(1, 9) / 8.0  # of each clothoid
+_BETWEEN_SAMPLES: Final = 1.015  # times the largest distance at a sample
+_SHORTEST: Final = 1e-6  # of the reach
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -162,7 +164,7 @@ def _solve(goal: Array, before: Array, behind: Array, turn: Array) -> tuple[Arra
         det = np.where(det == 0.0, np.nan, det)
         slope = slope - (miss.real * by_length.imag - miss.imag * by_length.real) / det
         length = length - (by_slope.real * miss.imag - by_slope.imag * miss.real) / det
-    solved = np.isfinite(length) & (np.abs(miss) <= _CONVERGED) & (length > 0.0)
+    solved = np.isfinite(length) & (np.abs(miss) <= _CONVERGED) & (length > _SHORTEST)
     length, slope = np.where(solved, length, 1.0), np.where(solved, slope, 0.0)
     return length, turn / (1.0 - RAMP) / length - shared, slope / length, solved
 
@@ -175,18 +177,23 @@ def _deviation(joints: Joints, blends: Blends) -> Array:
     points, heading = clothoid.advance(start, heading, curvature, sharpness, inside.ravel())
     arm = points.reshape(count, -1, 2) - joints.place[:, None]
     to_legs = np.minimum(
-        _from_arc(arm, joints.heading, joints.before), _from_arc(arm, joints.heading + joints.angle, joints.behind)
+        _from_arc(arm, joints.heading, joints.before, side=-1.0),
+        _from_arc(arm, joints.heading + joints.angle, joints.behind, side=1.0),
     )
     # From the joint to the circle that touches the blend at the nearest sample.
     nearest = np.arange(count) * arm.shape[1] + np.argmin(np.hypot(arm[..., 0], arm[..., 1]), axis=1)
     curvature = curvature + sharpness * inside.ravel()
-    tip = _from_arc(-arm.reshape(-1, 1, 2)[nearest], heading[nearest], curvature[nearest])[:, 0]
-    return np.asarray(np.maximum(to_legs.max(axis=1), tip))
+    tip = _from_arc(-arm.reshape(-1, 1, 2)[nearest], heading[nearest], curvature[nearest], side=0.0)[:, 0]
+    return np.asarray(np.maximum(_BETWEEN_SAMPLES * to_legs.max(axis=1), tip))
 
 
-def _from_arc(arm: Array, heading: Array, curvature: Array) -> Array:
-    """The distance of points at ``arm`` (J, P, 2) m from lines and circles through the origin: (J, P) m."""
+def _from_arc(arm: Array, heading: Array, curvature: Array, *, side: float) -> Array:
+    """The distance of points at ``arm`` (J, P, 2) m from lines and circles through the origin, (J, P) m.
+
+    Where ``side`` is 1 they begin at the origin, where it is -1 they end there.
+    """
     cos, sin, k = np.cos(heading)[:, None], np.sin(heading)[:, None], curvature[:, None]
     along, left = arm[..., 0] * cos + arm[..., 1] * sin, arm[..., 1] * cos - arm[..., 0] * sin
-    square = k * (along**2 + left**2)
-    return np.asarray(np.abs(square - 2.0 * left) / (1.0 + np.sqrt(np.maximum(1.0 + k * (square - 2.0 * left), 0.0))))
+    square = along**2 + left**2
+    off = np.abs(k * square - 2.0 * left) / (1.0 + np.sqrt(np.maximum(1.0 + k * (k * square - 2.0 * left), 0.0)))
+    return np.asarray(np.where(side * along < 0.0, np.sqrt(square), off))

@@ -22,8 +22,11 @@ if TYPE_CHECKING:
 STATIONS: Final = (0.0, 0.5, 1.0)
 """Where in each interval the limits are held; with both ends alone they were exceeded by 0.36 % in between."""
 
-SIDES: Final = 16
+SIDES: Final = 24
 """Sides of the half polygon, drawn inside the half circle, that stands for the cap on the tool's acceleration."""
+
+
+_ON_RAMPS: Final = 0.9984
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,25 +55,38 @@ class Rows:
         knot = np.arange(len(grid.segment)) + grid.segment  # each segment has one knot more than intervals
         last = np.flatnonzero(np.diff(grid.segment, append=-1))
         knots = np.insert(grid.segment, last + 1, grid.segment[last]), np.insert(grid.start, last + 1, grid.end[last])
-        at_knots = _limits(route, robot, *knots)
-        in_middle = _limits(route, robot, grid.segment, 0.5 * (grid.start + grid.end))
+        at_knots = limits_at(route, robot, *knots)
+        in_middle = limits_at(route, robot, grid.segment, 0.5 * (grid.start + grid.end))
         stations = [[one[knot] for one in at_knots], in_middle, [one[knot + 1] for one in at_knots]]
-        a, b, across, bound = (np.stack(one) for one in zip(*stations, strict=True))
-        return cls(a, b, 1.0 / route.acceleration[grid.segment], across, bound, np.diff(grid.distance))
+        first, second, curvature, bound = (np.stack(one) for one in zip(*stations, strict=True))
+        joints, tool = np.asarray(robot.joints.max_acceleration), route.acceleration[grid.segment]
+        return cls(first / joints, second / joints, 1.0 / tool, curvature / tool, bound, np.diff(grid.distance))
 
 
-def _limits(route: Route, robot: Robot, segment: IntArray, place: Array) -> tuple[Array, Array, Array, Array]:
-    """``joint_a``, ``joint_b``, ``across`` and ``bound`` at places of the given segments."""
+def limits_at(route: Route, robot: Robot, segment: IntArray, place: Array) -> tuple[Array, Array, Array, Array]:
+    """What limits the motion at places of the given segments.
+
+    Args:
+        route: the moves.
+        robot: the machine.
+        segment: (N,) indices.
+        place: (N,) m from the start of the segments.
+
+    Returns:
+        the first two derivatives of the joint angles along the path (N, 3) rad/m and rad/m2, the curvature (N,) 1/m,
+        and the largest squared speed (N,) m2/s2 that joint speed, feed and chord allow.
+    """
     position, tangent, bend, _ = route.path.evaluate(segment, place)
     _, dq, ddq = robot.path_derivatives(position, tangent, bend)
-    joints = np.asarray(robot.joints.max_acceleration)
     fastest = np.min(np.asarray(robot.joints.max_speed) / np.maximum(np.abs(dq), 1e-12), axis=1)
     bound = np.minimum(fastest, route.speed[segment]) ** 2
     held = np.flatnonzero(np.isfinite(route.chord[segment]))
     if len(held) and robot.controller.interpolation == "linear":
         chord = _chord_bound(robot, position[held], tangent[held], ddq[held], route.chord[segment[held]])
-        bound[held] = np.minimum(bound[held], chord)
-    return dq / joints, ddq / joints, np.hypot(bend[:, 0], bend[:, 1]) / route.acceleration[segment], bound
+        # On a clothoid the bound is convex along the path: between stations a straight x may lie above it by so much.
+        ramp = np.where(route.path.sharpness[segment[held]] == 0.0, 1.0, _ON_RAMPS)
+        bound[held] = np.minimum(bound[held], ramp * chord)
+    return dq, ddq, np.hypot(bend[:, 0], bend[:, 1]), bound
 
 
 def _chord_bound(robot: Robot, position: Array, tangent: Array, ddq: Array, chord: Array) -> Array:

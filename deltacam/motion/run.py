@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from deltacam.model import Array
-from deltacam.motion.law import TimeLaw
+from deltacam.motion.jerk import limited
+from deltacam.motion.law import Law
 from deltacam.motion.parametrize import solve
 from deltacam.motion.route import Grid, Route
 from deltacam.motion.rows import Rows
@@ -42,8 +43,10 @@ def run(route: Route, robot: Robot) -> list[Run]:
     grid = Grid.over(route, robot)
     rows = Rows.over(route, grid, robot)
     slowness = np.ones(len(rows.width))
+    quick = robot.joints.max_jerk is None
+    law: Law
     for _ in range(_ROUNDS):
-        law = solve(grid, rows, slowness)
+        law = solve(grid, rows, slowness) if quick else limited(route, grid, rows, robot, slowness)
         setpoints = sample(route.path, law, robot)
         slower = _slower(route, grid, law, robot, setpoints)
         if (slower == 1.0).all():
@@ -52,7 +55,7 @@ def run(route: Route, robot: Robot) -> list[Run]:
     return [Run(*one) for one in zip(setpoints, law.durations.tolist(), strict=True)]
 
 
-def _slower(route: Route, grid: Grid, law: TimeLaw, robot: Robot, setpoints: tuple[Array, ...]) -> Array:
+def _slower(route: Route, grid: Grid, law: Law, robot: Robot, setpoints: tuple[Array, ...]) -> Array:
     """By which factor the motion in every interval must be slower to stay within the chord tolerance, (I,)."""
     factor = np.ones(len(grid.segment))
     if not np.isfinite(route.chord).any():

@@ -195,9 +195,9 @@ def test_both_interfaces_of_the_solver_give_the_same_speeds(seed: int, robot: Ro
     grid = Grid.over(route, robot)
     program = module._Program.of(grid, Rows.over(route, grid, robot), np.ones(len(grid.segment)))
     quick, slow = module._profile(program), module._by_public_interface(program)
-    assert np.abs(quick - slow).max() <= 1e-6
+    assert np.abs(quick - slow).max() <= 3e-6  # of the largest x; toppra gives 1e-10 of it away at every step
     times = [TimeLaw.of(grid.distance, program.unit * x, grid.rest).durations for x in (quick, slow)]
-    assert times[0] == pytest.approx(times[1], rel=1e-5)  # toppra gives 1e-10 of x away at every step
+    assert times[0] == pytest.approx(times[1], rel=1e-5)
 
 
 def test_a_long_route_is_solved_in_slices_as_a_short_one_is(monkeypatch: pytest.MonkeyPatch) -> None:
