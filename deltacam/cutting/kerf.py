@@ -3,7 +3,7 @@
 Shapely's ``buffer`` of the flattened contour decides the topology: what is left of the contour, and in how many pieces.
 Each edge of its result is then traced back to the line or arc of the drawing, or to the corner, that it is the offset
 of, and the exact offset elements are joined where they meet. So the path keeps the tangency and the radii of the
-drawing, and no error of flattening is left in it.
+drawing, and no error of flattening is left in it. Convex contours need none of this; see `convex`.
 """
 
 from __future__ import annotations
