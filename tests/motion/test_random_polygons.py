@@ -40,7 +40,7 @@ def random_polygon(rng: np.random.Generator) -> Curve:
 @pytest.mark.parametrize("batch", range(BATCHES))
 def test_no_corner_is_passed_faster_than_the_limits_allow(batch: int, corner: Corner) -> None:
     rng = np.random.default_rng([batch, corner == "stop"])
-    robot = (STRONG, WEAK)[batch % 2]
+    robot = (STRONG, WEAK, WEAK, STRONG)[batch]
     limits = Limits([0.05, 0.1, 0.3, 1.0][batch], CAP)
     moves = []
     for _ in range(BATCH):
