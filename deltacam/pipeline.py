@@ -6,12 +6,10 @@ This is the only place that knows the order. Stages say nothing and ask nothing;
 from __future__ import annotations
 
 import io
-import os
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -19,11 +17,24 @@ from deltacam.cutting import kerf, order, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
 from deltacam.drawing.reader import read_drawing
 from deltacam.errors import ProgramError
-from deltacam.model import EVERYTHING, Cut, Drawing, Finding, Mode, Operation, Placement, Process, Report, Selection
+from deltacam.model import (
+    EVERYTHING,
+    Cut,
+    Drawing,
+    Finding,
+    Held,
+    Mode,
+    Operation,
+    Placement,
+    Process,
+    Report,
+    Selection,
+)
 from deltacam.motion import setpoints
 from deltacam.program import csv
 from deltacam.program.atomic import replace_when_done, write_whole
 from deltacam.program.formats import read_program
+from deltacam.program.outputs import Outputs, make_folder
 from deltacam.program.program import DrawingRef, Program
 from deltacam.robot.reader import load_robot
 from deltacam.robot.robot import Robot
@@ -57,40 +68,6 @@ class Planned:
     content: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Outputs:
-    """The files that planning a drawing writes into a folder."""
-
-    program: Path
-    report_json: Path
-    report_html: Path
-
-    @classmethod
-    def of(cls, drawing: str | Path, folder: str | Path) -> Outputs:
-        """The files for a drawing of that name."""
-        folder, stem = Path(folder), Path(drawing).stem
-        names = (f"{stem}.program.csv", f"{stem}.report.json", f"{stem}.report.html")
-        return cls(*(folder / name for name in names))
-
-    def clear(self) -> None:
-        """Remove what an earlier run left, so that a failed run leaves no program to be used by mistake.
-
-        Raises:
-            ProgramError: the operating system refuses.
-        """
-        for path in (self.program, self.report_json, self.report_html):
-            try:
-                path.unlink(missing_ok=True)
-            except NotADirectoryError:
-                continue  # so nothing is left there
-            except OSError as problem:
-                reason = (problem.strerror or str(problem)).lower()
-                hint = "choose another folder with -o, or get permission there"
-                raise ProgramError(
-                    f"the file of an earlier run cannot be removed: {reason}", where=str(path), hint=hint
-                ) from problem
-
-
 def plan(
     drawing: str | Path,
     *,
@@ -103,6 +80,7 @@ def plan(
     rotation: float = 0.0,
     mode: Mode = Mode.CUT,
     jobs: int | None = None,
+    what_if: bool | None = None,
     progress: Progress = _silent,
 ) -> Planned:
     """Plan a drawing and check the program independently.
@@ -118,6 +96,7 @@ def plan(
         rotation: of the drawing about that centre, rad, counter-clockwise.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
         jobs: how many processes plan the motion, >= 1; None takes as many as pay. The program is the same for any.
+        what_if: whether to find out how long the cuts would take without each limit; None does where that is quick.
         progress: is told what is going on.
 
     Returns:
@@ -131,14 +110,15 @@ def plan(
     progress("read", 0, 1)
     selection = replace(selection, rules=process.rules, open=process.open)
     part = read_drawing(drawing, unit=unit, default_unit=default_unit, selection=selection)
-    program, findings = _program(part, robot, process, at, rotation, mode, jobs, progress)
+    how = _How(robot, process, at, rotation, mode, jobs, what_if, progress)
+    program, held, findings = _program(part, how)
     progress("write", 0, 1)
     content = _content(program)
     program = csv.read(io.BytesIO(content), name=Outputs.of(drawing, ".").program.name)
     progress("verify", 0, 1)
     report = verification.verify(program, drawing=part)
     summary = {**report.summary, "derived_joint_limits": list(robot.joints.derived)}
-    report = replace(report, summary=summary, findings=(*report.findings, *findings))
+    report = replace(report, summary=summary, findings=(*report.findings, *findings), held=held)
     progress("verify", 1, 1)
     return Planned(program, report, part, content)
 
@@ -158,7 +138,7 @@ def plan_to_folder(
         DeltacamError: as ``plan``, or the folder cannot be written to. No program of an earlier run is left then.
     """
     outputs = Outputs.of(drawing, folder)
-    _make_folder(Path(folder))
+    make_folder(Path(folder))
     outputs.clear()
     planned = plan(drawing, progress=progress, **options)
     progress("report", 0, 1)
@@ -197,73 +177,67 @@ def verify(
     return verification.verify(program, drawing=part, robot=robot)
 
 
-def _program(
-    part: Drawing,
-    robot: Robot,
-    process: Process,
-    at: tuple[float, float],
-    rotation: float,
-    mode: Mode,
-    jobs: int | None,
-    progress: Progress,
-) -> tuple[Program, tuple[Finding, ...]]:
-    """The program of a drawing, and what a person should know about it."""
+class _How(NamedTuple):
+    """How a drawing is planned, as `plan` takes it."""
+
+    robot: Robot
+    process: Process
+    at: tuple[float, float]
+    rotation: float
+    mode: Mode
+    jobs: int | None
+    what_if: bool | None
+    progress: Progress
+
+
+def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple[Finding, ...]]:
+    """The program of a drawing, what holds it back, and what a person should know about it."""
+    robot, process = how.robot, how.process
     if any(contour.operation is Operation.ENGRAVE for contour in part.contours):
         setpoints.engraving(process)  # refuses now rather than after everything else
-    where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
-    progress("kerf", 0, 1)
+    where = placement.place(part.contours, robot=robot, at=how.at, rotation=how.rotation)
+    how.progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
     placement.refuse_outside(
         shifted.cuts, robot=robot, placement=where, unit=part.unit_in_words, metres_per_unit=part.metres_per_unit
     )
-    if mode is Mode.FRAME:
-        moves = _frame(shifted.cuts, robot, process, where)
-    else:
-        moves = _cutting(part, shifted.cuts, robot, process, where, mode, jobs, progress)
+    moves = (_frame if how.mode is Mode.FRAME else _cutting)(part, shifted.cuts, how, where)
     program = Program(
         robot=robot,
         placement=where,
         process=process,
         drawing=DrawingRef.of(part),
-        mode=mode,
+        mode=how.mode,
         blocks=moves.blocks,
         q=moves.q,
         power=moves.power,
         block=moves.block,
     )
-    return program, shifted.findings
+    return program, moves.held, shifted.findings
 
 
-def _cutting(
-    part: Drawing,
-    cuts: tuple[Cut, ...],
-    robot: Robot,
-    process: Process,
-    where: Placement,
-    mode: Mode,
-    jobs: int | None,
-    progress: Progress,
-) -> setpoints.Setpoints:
-    progress("order", 0, 1)
+def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> setpoints.Setpoints:
+    how.progress("order", 0, 1)
     parents = {contour.number: contour.parent for contour in part.contours}
-    ordered = order.order(cuts, parents=parents, start=_to_sheet(robot.workspace.park, where))
+    ordered = order.order(cuts, parents=parents, start=_to_sheet(how.robot.workspace.park, where))
     return setpoints.plan_motion(
         ordered,
-        robot=robot,
-        process=process,
+        robot=how.robot,
+        process=how.process,
         placement=where,
         drawing_error=part.conversion_error,
-        mode=mode,
-        jobs=jobs,
-        progress=lambda done, total: progress("motion", done, total),
+        mode=how.mode,
+        jobs=how.jobs,
+        what_if=how.what_if,
+        progress=lambda done, total: how.progress("motion", done, total),
     )
 
 
-def _frame(cuts: tuple[Cut, ...], robot: Robot, process: Process, where: Placement) -> setpoints.Setpoints:
+def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> setpoints.Setpoints:
     (left, bottom), (right, top) = placement.bounding_box(cuts)
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
-    placement.refuse_frame_outside(corners, robot=robot, placement=where)
-    return setpoints.plan_frame(corners, robot=robot, process=process, placement=where)
+    placement.refuse_frame_outside(corners, robot=how.robot, placement=where)
+    return setpoints.plan_frame(corners, robot=how.robot, process=how.process, placement=where)
 
 
 def _to_sheet(place: tuple[float, float], where: Placement) -> tuple[float, float]:
@@ -276,21 +250,3 @@ def _content(program: Program) -> bytes:
     stream = io.BytesIO()
     csv.write(program, stream)
     return stream.getvalue()
-
-
-def _make_folder(folder: Path) -> None:
-    """Make the folder where it is missing, and find out now whether it can be written to."""
-    if folder.exists() and not folder.is_dir():
-        raise ProgramError("this is a file, not a folder", where=str(folder), hint="name a folder with -o")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / f".deltacam-{os.getpid()}.tmp"
-        try:
-            probe.touch()
-        finally:
-            with suppress(OSError):
-                probe.unlink(missing_ok=True)
-    except OSError as problem:
-        reason = (problem.strerror or str(problem)).lower()
-        hint = "choose another folder with -o, or get permission there"
-        raise ProgramError(f"the folder cannot be written to: {reason}", where=str(folder), hint=hint) from problem

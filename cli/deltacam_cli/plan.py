@@ -15,7 +15,8 @@ from deltacam_cli.progress import ProgressLine
 if TYPE_CHECKING:
     from deltacam.defaults import Defaults
     from deltacam.model import Process
-    from deltacam.pipeline import Outputs, Planned
+    from deltacam.pipeline import Planned
+    from deltacam.program.outputs import Outputs
     from deltacam.robot.robot import Robot
 
 JOBS = click.IntRange(0, 64)
@@ -38,6 +39,11 @@ JOBS = click.IntRange(0, 64)
 @click.option("--dry-run", is_flag=True, help="The same motion with the laser off.")
 @click.option("--frame", is_flag=True, help="Only trace the bounding box, with the laser off.")
 @click.option("--jobs", type=JOBS, help="Processes for planning; the result is the same. 0: as many as pay.")
+@click.option(
+    "--what-if/--no-what-if",
+    default=None,
+    help="Also say how long each cut would take without each limit. Without either: where that is quick.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the summary.")
 def command(drawing: Path, folder: Path, *, dry_run: bool, frame: bool, as_json: bool, **values: Any) -> None:
     """Plan DRAWING (a DXF file) and verify the program.
@@ -49,7 +55,8 @@ def command(drawing: Path, folder: Path, *, dry_run: bool, frame: bool, as_json:
     deltacam plan part.dxf --units mm --kerf 0.2 --feed 12m/min -o out
     """
     from deltacam.model import Mode
-    from deltacam.pipeline import Outputs, plan_to_folder
+    from deltacam.pipeline import plan_to_folder
+    from deltacam.program.outputs import Outputs
 
     if dry_run and frame:
         raise click.UsageError("--dry-run and --frame exclude each other")
@@ -83,6 +90,7 @@ def _settings(
     at: str,
     rotate: str,
     jobs: int | None,
+    what_if: bool | None,
     **single_values: str | None,
 ) -> dict[str, Any]:
     """What the command line and the user's own defaults say, as the pipeline takes it."""
@@ -96,6 +104,7 @@ def _settings(
         "at": options.place("--at", at),
         "rotation": options.angle("--rotate", rotate),
         "jobs": jobs or None,
+        "what_if": what_if,
     }
 
 

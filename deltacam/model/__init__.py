@@ -20,7 +20,7 @@ from deltacam.model.findings import Finding
 from deltacam.model.ledger import LedgerEntry, Outcome
 from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement
 from deltacam.model.process import Corner, Process
-from deltacam.model.report import Check, Report
+from deltacam.model.report import Check, Held, Report
 
 __all__ = [
     "DEFAULT_JOINING",
@@ -38,6 +38,7 @@ __all__ = [
     "Cut",
     "Drawing",
     "Finding",
+    "Held",
     "IntArray",
     "Layer",
     "LedgerEntry",

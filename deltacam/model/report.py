@@ -33,6 +33,23 @@ class Check:
     where: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class Held:
+    """What holds back the motion along one contour.
+
+    Attributes:
+        contour: the number of the drawn contour.
+        time: of its motion with the laser on, s, before it is stretched to whole ticks.
+        bound: for how long each limit binds, s, by name; what binds never is not there.
+        without: about how long it would take without each limit, s, where that is less; empty where nobody asked.
+    """
+
+    contour: int
+    time: float
+    bound: Mapping[str, float]
+    without: Mapping[str, float]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Report:
     """What a check of a program found.
@@ -42,12 +59,14 @@ class Report:
         summary: figures for people, by name.
         ledger: of the drawing, where one was given.
         findings: what a person should know.
+        held: what holds back the motion along every contour, as the planner says; empty where nothing was planned.
     """
 
     checks: tuple[Check, ...]
     summary: Mapping[str, Any]
     ledger: tuple[LedgerEntry, ...] = ()
     findings: tuple[Finding, ...] = field(default=())
+    held: tuple[Held, ...] = ()
 
     @property
     def passed(self) -> bool:

@@ -7,6 +7,7 @@ beside it allow, and where jerk is limited so does every other jump of the curva
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -35,7 +36,26 @@ _NEAR_ENOUGH: Final = 0.985
 _MARGIN: Final = 0.9975
 
 
-def pieces(cut: Curve, *, corner: Corner, deviation: float, ramps: bool, z: float) -> tuple[Path, ...]:
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """What the tool can do about where a cut is, for choosing between a blend and a stop.
+
+    Attributes:
+        feed: m/s.
+        acceleration: m/s2.
+        jerk: m/s3.
+        tick: s; a stop waits for the next one, half of it on average.
+    """
+
+    feed: float
+    acceleration: float
+    jerk: float
+    tick: float
+
+
+def pieces(
+    cut: Curve, *, corner: Corner, deviation: float, ramps: bool, z: float, pace: Pace | None = None
+) -> tuple[Path, ...]:
     """Split a cut at the corners to stop at, and smooth the rest.
 
     Args:
@@ -44,6 +64,7 @@ def pieces(cut: Curve, *, corner: Corner, deviation: float, ramps: bool, z: floa
         deviation: how far the path may lie from the drawn one, m, >= 0.
         ramps: whether the curvature may not jump either.
         z: height of the sheet, m.
+        pace: of the tool; where it is known, corners at which a stop takes less time than a blend are stopped at.
 
     Returns:
         paths whose segments are tangent, each to be run from rest to rest, together the whole cut.
@@ -61,7 +82,29 @@ def pieces(cut: Curve, *, corner: Corner, deviation: float, ramps: bool, z: floa
         needed |= jumps
     left = deviation - np.maximum(off[:-1], off[1:])
     blends, reach = _blends(curve, angle, wanted, left)
+    if pace is not None:
+        reach[(np.abs(angle) > SHARPEST_PASSED) & _slower_than_a_stop(blends, pace)] = 0.0
     return _assemble(curve, blends, reach, np.flatnonzero(needed & (reach == 0.0)) + 1, z)
+
+
+def _slower_than_a_stop(blends: Blends, pace: Pace) -> BoolArray:
+    """Where passing a blend takes longer than stopping, (J,): a small blend is passed slowly where jerk is limited.
+
+    Both are compared with going on at the feed. To slow down by dv takes t = dv / a + a / j, or 2 sqrt(dv / j) where
+    that is less; slowing down to v and back loses t (1 - v / feed), and a blend of length L another L / v - L / feed.
+    The speed on a blend is bounded by its curvature and by how fast that rises.
+    """
+    length, ramp = blends.length.sum(axis=1), blends.length[:, 0]
+    bend = np.maximum(np.abs(blends.curvature).max(axis=1), 1e-9)
+    speed = np.minimum(np.sqrt(pace.acceleration / bend), np.cbrt(pace.jerk * ramp / bend))
+    speed = np.minimum(speed, pace.feed)
+
+    def taken(change: Array) -> Array:
+        steady = change / pace.acceleration + pace.acceleration / pace.jerk
+        return np.where(change > pace.acceleration**2 / pace.jerk, steady, 2.0 * np.sqrt(change / pace.jerk))
+
+    passing = taken(pace.feed - speed) * (1.0 - speed / pace.feed) + length * (1.0 / speed - 1.0 / pace.feed)
+    return np.asarray(passing > taken(np.full_like(speed, pace.feed)) + 0.5 * pace.tick)
 
 
 def _without_slivers(curve: Curve) -> Curve:

@@ -15,29 +15,17 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 from scipy.ndimage import minimum_filter1d, uniform_filter1d
 
-from deltacam.model import Array, BoolArray, IntArray
-from deltacam.motion import retime
-from deltacam.motion.law import TimeLaw
+from deltacam.model import Array, IntArray
+from deltacam.motion import knots, retime
+from deltacam.motion.along import Along
 from deltacam.motion.parametrize import solve
 from deltacam.motion.route import Grid, Route
-from deltacam.motion.rows import Rows, limits_at
-from deltacam.motion.tempo import Base, Motion, Tempo
+from deltacam.motion.rows import Rows
+from deltacam.motion.tempo import Base, Tempo
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
-COARSEST: Final = 4.0
-"""Largest distance of knots, ticks, where nothing happens."""
-
-_FINEST: Final = 0.1  # ticks
-_GROWTH: Final = 0.15  # of the distance of knots per distance from a place where it must be small
-_PER_RAMP: Final = 6.0  # knots while the acceleration is built up
-_PER_ROUGH_RAMP: Final = 4.0
-_PER_CLOTHOID: Final = 2.5
-_ON_CLOTHOIDS: Final = 2.0  # times as far as where the acceleration changes
-_WINDOW: Final = 5.0  # in distances of knots
-_BUSY: Final = 0.3  # of the limit of jerk
-_FEWEST: Final = 8
 _ROUNDS: Final = 2
 _CHECKED: Final = (np.arange(8) + 0.5) / 8.0
 _INSIDE: Final = 0.9
@@ -73,12 +61,12 @@ def limited(route: Route, grid: Grid, rows: Rows, robot: Robot, slowness: Array)
     """
     steady = _steady(route, grid, robot)
     law = solve(grid, replace(rows, bound=np.minimum(rows.bound, steady)), slowness)
-    ramp = _ramp(law, rows, robot)
-    base = _averaged(route, grid, law, ramp, robot)
+    ramps = knots.ramps(law, rows, robot)
+    base = knots.averaged(route, grid, law, ramps, robot)
     slower = slowness[_interval(grid, base)] ** 2
     all_of_it = _Shares(*np.ones((3, len(base.width))))
     rough = _fastest(route, robot, base, all_of_it, slower, gap=_ROUGH_GAP)
-    base = _again(route, rough, ramp, robot)
+    base = knots.again(route, rough, ramps, robot)
     slower = slowness[_interval(grid, base)] ** 2
     tempo = _refined(route, robot, base, slower)
     found = _shares(route, robot, tempo, slower)
@@ -107,138 +95,6 @@ def _steady(route: Route, grid: Grid, robot: Robot) -> Array:
         third = np.abs(robot.third_derivative(*at)) / np.asarray(robot.joints.max_jerk)
         found = np.minimum(found, np.maximum(third.max(axis=1), 1e-12) ** (-2.0 / 3.0))
     return found[None]
-
-
-def _ramp(law: TimeLaw, rows: Rows, robot: Robot) -> Array:
-    """How long every move takes to build up its largest acceleration, (K,) s."""
-    acceleration = np.abs(rows.joint_a[1] * law.acceleration[:, None] + rows.joint_b[1] * law.squared[:-1, None])
-    ramp = acceleration * np.asarray(robot.joints.max_acceleration) / np.asarray(robot.joints.max_jerk)
-    return np.maximum.reduceat(ramp.max(axis=1), law.rest[:-1])
-
-
-def _averaged(route: Route, grid: Grid, law: TimeLaw, ramp: Array, robot: Robot) -> Base:
-    """The law, its speed averaged over a window of some knots."""
-    jump = np.abs(np.diff(law.acceleration, prepend=0.0)) > 0.2 * route.acceleration[grid.segment]
-    begin, durations = law.time[law.rest[:-1]], law.durations
-    move = np.repeat(np.arange(len(ramp)), np.diff(law.rest))
-    samples = _Samples(move, law.time[:-1] - begin[move], grid.segment, np.sqrt(law.squared[:-1]), jump)
-    spacing = samples.spacing(route, ramp / _PER_ROUGH_RAMP, robot)
-    margin = 0.5 * _WINDOW * spacing[law.rest[:-1]]
-    first, width = _knots(samples, spacing, durations, margin)
-
-    def speed(move: IntArray, place: Array) -> Array:
-        at = place - margin[move]
-        window = _WINDOW * np.interp(begin[move] + np.clip(at, 0.0, durations[move]), law.time[:-1], spacing)
-        ends = (np.clip(at + side * window, 0.0, durations[move]) for side in (-0.5, 0.5))
-        before, after = (law.at(move, end) for end in ends)
-        return (after - before) / window
-
-    distance = law.distance[law.rest]
-    return Base.through(first, width, speed, distance[:-1], np.diff(distance))
-
-
-def _again(route: Route, tempo: Tempo, ramp: Array, robot: Robot) -> Base:
-    """The motion of a tempo as a base with knots where it needs them."""
-    base = tempo.base
-    motion = tempo.motion(np.arange(len(base.width)), np.zeros(len(base.width)))
-    along = _Along.of(route, robot, motion)
-    busy = (np.abs(along.joints[2]) / np.asarray(robot.joints.max_jerk)).max(axis=1) > _BUSY
-    segment, _ = route.path.locate(motion.distance)
-    time = tempo.time[:-1] - tempo.time[base.first[base.move]]
-    samples = _Samples(base.move, time, segment, motion.speed, busy)
-    first, width = _knots(
-        samples, samples.spacing(route, ramp / _PER_RAMP, robot), tempo.durations, np.zeros(len(ramp))
-    )
-    start = base.distance[base.first[:-1]]
-    length = np.diff(np.append(start, route.path.total))
-    return Base.through(first, width, lambda move, at: tempo.motion(*tempo.locate(move, at)).speed, start, length)
-
-
-class _Samples(NamedTuple):
-    """Places along moves in their order, (N,) each.
-
-    Attributes:
-        move: of each.
-        time: s since the move began.
-        segment: of the path.
-        speed: m/s.
-        busy: whether the acceleration changes there.
-    """
-
-    move: IntArray
-    time: Array
-    segment: IntArray
-    speed: Array
-    busy: BoolArray
-
-    def spacing(self, route: Route, least: Array, robot: Robot) -> Array:
-        """How far apart knots may be at each sample, (N,) s.
-
-        That is ``least`` (K,) s where the acceleration changes, and less on short clothoids.
-        """
-        tick = 1.0 / robot.controller.rate_hz
-        path, ends = route.path, np.flatnonzero(np.diff(self.move, prepend=-1, append=-1))
-        busy = self.busy.copy()
-        busy[ends[:-1]] = busy[ends[1:] - 1] = True
-        wanted = np.where(busy, least[self.move], COARSEST * tick)
-        passing = path.length[self.segment] / np.maximum(self.speed, 1e-9) / _PER_CLOTHOID
-        passing = np.minimum(passing, _ON_CLOTHOIDS * least[self.move])
-        wanted = np.where(path.sharpness[self.segment] == 0.0, wanted, np.minimum(wanted, passing))
-        wanted = np.clip(wanted, _FINEST * tick, COARSEST * tick)
-        # Away from a place it grows evenly. Moves follow each other with a pause in which it is as large as it may be.
-        time = self.time + self.move * COARSEST * tick / _GROWTH
-        time = time + np.concatenate([[0.0], np.cumsum(np.where(np.diff(self.move) > 0, self.time[:-1], 0.0))])
-        after = np.minimum.accumulate(wanted - _GROWTH * time) + _GROWTH * time
-        before = np.minimum.accumulate((wanted + _GROWTH * time)[::-1])[::-1] - _GROWTH * time
-        return np.asarray(np.minimum(after, before))
-
-
-def _knots(samples: _Samples, spacing: Array, durations: Array, margin: Array) -> tuple[IntArray, Array]:
-    """The first interval of every move, and the widths of the intervals, s.
-
-    The intervals cover the durations (K,) s and a ``margin`` (K,) s before and after.
-    """
-    firsts = np.flatnonzero(np.diff(samples.move, prepend=-1))
-    ends = np.append(firsts[1:], len(samples.move))
-    widths = []
-    for move, (first, end) in enumerate(zip(firsts.tolist(), ends.tolist(), strict=True)):
-        time = np.concatenate(
-            [[-margin[move]], samples.time[first:end], [durations[move], durations[move] + margin[move]]]
-        )
-        apart = np.concatenate([[spacing[first]], spacing[first:end], [spacing[end - 1]] * 2])
-        passed = np.concatenate([[0.0], np.cumsum(np.diff(time) * 0.5 * (1.0 / apart[1:] + 1.0 / apart[:-1]))])
-        count = max(_FEWEST, int(np.ceil(passed[-1])))
-        widths.append(np.diff(np.interp(np.linspace(0.0, passed[-1], count + 1), passed, time)))
-    return np.concatenate([[0], np.cumsum([len(one) for one in widths])]), np.concatenate(widths)
-
-
-class _Along(NamedTuple):
-    """A motion along a route: derivatives by its parameter of the joints (N, 3), and what bounds the tool (N,).
-
-    Attributes:
-        joints: the first three, rad by the parameter.
-        across: m/s2, the acceleration of the tool across the path.
-        bound: m2/s2, the largest squared speed.
-        cap: m/s2, the largest acceleration of the tool.
-    """
-
-    joints: tuple[Array, Array, Array]
-    across: Array
-    bound: Array
-    cap: Array
-
-    @classmethod
-    def of(cls, route: Route, robot: Robot, motion: Motion) -> _Along:
-        return cls.at(route, robot, motion, *route.path.locate(motion.distance))
-
-    @classmethod
-    def at(cls, route: Route, robot: Robot, motion: Motion, segment: IntArray, place: Array) -> _Along:
-        """For motions (N,) at places (N,) m from the start of segments (N,)."""
-        first, second, curvature, bound = limits_at(route, robot, segment, place)
-        third = robot.third_derivative(*route.path.evaluate(segment, place))
-        v, a, j = (one[:, None] for one in motion[1:])
-        joints = first * v, first * a + second * v**2, first * j + 3.0 * second * v * a + third * v**3
-        return cls(joints, curvature * motion.speed**2, bound, route.acceleration[segment])
 
 
 def _fastest(
@@ -278,7 +134,7 @@ def _stations(route: Route, robot: Robot, base: Base, lower: _Shares, slower: Ar
     one, other = shape[1] + met, 2 * shape[1] + met
     segment[one], inside[one] = before, route.path.length[before]
     segment[other], inside[other] = before + 1, 0.0
-    along = _Along.at(route, robot, motion, segment, inside)
+    along = Along.at(route, robot, motion, segment, inside)
     first, second, third = (np.ascontiguousarray(one.T).reshape(3, *shape) for one in along.joints)
     speed = motion.speed.reshape(shape)
     limits = np.array([robot.joints.max_acceleration, robot.joints.max_jerk])[:, :, None, None]
@@ -318,7 +174,7 @@ def _shares(route: Route, robot: Robot, tempo: Tempo, slower: Array) -> _Shares:
     count = len(tempo.base.width)
     interval = np.tile(np.arange(count), len(_CHECKED))
     motion = tempo.motion(interval, np.repeat(_CHECKED, count))
-    along = _Along.of(route, robot, motion)
+    along = Along.of(route, robot, motion)
     slower = slower[interval]
     speed = motion.speed / np.sqrt(slower * along.bound)
     joints = np.abs(along.joints[1]) / np.asarray(robot.joints.max_acceleration)

@@ -27,8 +27,7 @@ from deltacam.motion.rows import SIDES, STATIONS, Rows
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
-_STEP_BACK: Final = 1.0 - 1e-7
-_TRIES: Final = 100
+_STEPS_BACK: Final = tuple(1e-8 * 2.0**power for power in range(27))  # the last is most of the way to a stop
 _SLICE: Final = 4096  # steps for one solver, which keeps 1.7 kB for each
 _SLICES_KEPT: Final = 16
 _BACKWARDS: Final = np.array([1e-9, -1.0])
@@ -190,11 +189,11 @@ def _by_compiled_solver(program: _Program, wrapper: Any) -> Array:
         part, inside = divmod(point, _SLICE)
         step, after = steps(part), highest[point + 1]
         change = step(inside, None, _FORWARDS, x, x, 0.0, after)[0]
-        for _ in range(_TRIES):
+        for back in _STEPS_BACK:
             if change == change:
                 break
             # At the very edge of the controllable set rounding may leave no solution; a little below there is one.
-            squared[point] = x = x * _STEP_BACK
+            squared[point] = x = x * (1.0 - back)
             change = step(inside, None, _FORWARDS, x, x, 0.0, after)[0]
         else:
             raise program.undrivable(point)
@@ -220,19 +219,21 @@ def _for_toppra(program: _Program) -> tuple[list[Any], Any, Array]:
     from toppra.constraint import LinearConstraint
 
     class Rows(LinearConstraint):  # type: ignore[misc]
-        """One block of rows; the bounds of x come with one of them, because reading them takes long."""
+        """One block of rows; the bounds of the variables come with one of them, because reading them takes long."""
 
-        def __init__(self, block: _Block, bounds: Array | None) -> None:
+        def __init__(self, block: _Block, bounds: tuple[Array, Array] | tuple[None, None]) -> None:
             super().__init__()
             self.identical = True
-            self.parameters = *block, np.zeros(len(block.F)), None, bounds
+            self.parameters = *block, np.zeros(len(block.F)), *bounds
 
         def compute_constraint_params(self, *_: object) -> tuple[Any, ...]:
             return self.parameters
 
-    bounds = np.column_stack([np.zeros_like(program.highest), program.highest])
+    # x is at most 1, and so is its change: without that bound, rows with tiny factors would matter to the solver.
+    change = np.tile([-1.0, 1.0], (len(program.highest), 1))
+    bounds = change, np.column_stack([np.zeros_like(program.highest), program.highest])
     grid = np.linspace(0.0, 0.5 * (len(program.highest) - 1), len(program.highest))
-    constraints = [Rows(block, bounds if block is program.blocks[0] else None) for block in program.blocks]
+    constraints = [Rows(block, bounds if block is program.blocks[0] else (None, None)) for block in program.blocks]
     return constraints, _Interval(grid), grid
 
 

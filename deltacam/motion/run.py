@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from deltacam.model import Array
+from deltacam.motion import explain
 from deltacam.motion.jerk import limited
-from deltacam.motion.law import Law
+from deltacam.motion.law import Law, TimeLaw
 from deltacam.motion.parametrize import solve
 from deltacam.motion.route import Grid, Route
 from deltacam.motion.rows import Rows
 from deltacam.motion.sample import chord_deviation, sample
+from deltacam.motion.tempo import Tempo
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
@@ -27,14 +29,23 @@ class Run(NamedTuple):
     Attributes:
         q: (N, 3) rad, the setpoint at every tick but that at which it ends.
         duration: s, before it is stretched to end on a tick.
+        held: for how long each of `explain.NAMES` binds, s.
+        without: how long the move would take without each of `explain.KINDS`, s; empty where nobody asked.
     """
 
     q: Array
     duration: float
+    held: Array
+    without: Array
 
 
-def run(route: Route, robot: Robot) -> list[Run]:
+def run(route: Route, robot: Robot, *, what_if: bool = False) -> list[Run]:
     """The fastest motion along every move of a route from rest to rest.
+
+    Args:
+        route: the moves.
+        robot: the machine.
+        what_if: whether to find out how long the moves would take without each of the limits.
 
     Raises:
         UndrivableError: a move has none.
@@ -44,7 +55,7 @@ def run(route: Route, robot: Robot) -> list[Run]:
     rows = Rows.over(route, grid, robot)
     slowness = np.ones(len(rows.width))
     quick = robot.joints.max_jerk is None
-    law: Law
+    law: TimeLaw | Tempo
     for _ in range(_ROUNDS):
         law = solve(grid, rows, slowness) if quick else limited(route, grid, rows, robot, slowness)
         setpoints = sample(route.path, law, robot)
@@ -52,7 +63,9 @@ def run(route: Route, robot: Robot) -> list[Run]:
         if (slower == 1.0).all():
             break
         slowness *= slower
-    return [Run(*one) for one in zip(setpoints, law.durations.tolist(), strict=True)]
+    held = explain.held(route, grid, rows, robot, law)
+    without = explain.without(route, grid, rows, robot, law.durations) if what_if else np.zeros((len(held), 0))
+    return [Run(*one) for one in zip(setpoints, law.durations.tolist(), held, without, strict=True)]
 
 
 def _slower(route: Route, grid: Grid, law: Law, robot: Robot, setpoints: tuple[Array, ...]) -> Array:

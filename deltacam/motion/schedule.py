@@ -46,6 +46,7 @@ def schedule(
     robot: Robot,
     *,
     jobs: int | None = None,
+    what_if: bool | None = None,
     progress: Callable[[int], None] = lambda _done: None,
 ) -> list[Run]:
     """How every move is run.
@@ -54,6 +55,8 @@ def schedule(
         moves: at one height.
         robot: the machine.
         jobs: processes, >= 1; None takes as many as there are cores, where there is enough to do.
+        what_if: whether to find out how long moves would take without each of the limits; None does where there are
+            few gridpoints.
         progress: is told how many moves are done.
 
     Raises:
@@ -65,7 +68,7 @@ def schedule(
     processes = min(jobs or (cores if len(chunks) >= _PAYS else 1), len(chunks))
     runs: list[Run] = []
     with _workers(processes) as run_all:
-        for found in run_all(partial(_run_chunk, robot), chunks):
+        for found in run_all(partial(_run_chunk, robot, _few(chunks) if what_if is None else what_if), chunks):
             runs += found
             progress(len(runs))
     return runs
@@ -85,10 +88,14 @@ def _chunks(moves: Sequence[Move]) -> Iterator[list[Move]]:
         yield chunk
 
 
-def _run_chunk(robot: Robot, moves: Sequence[Move]) -> list[Run]:
+def _few(chunks: Sequence[Sequence[Move]]) -> bool:
+    return len(chunks) <= _PAYS
+
+
+def _run_chunk(robot: Robot, what_if: bool, moves: Sequence[Move]) -> list[Run]:
     route = Route.of([(move.path, move.limits) for move in moves])
     try:
-        return run(route, robot)
+        return run(route, robot, what_if=what_if)
     except UndrivableError as problem:
         raise InfeasibleError(problem.what, where=moves[problem.move].where, hint=problem.hint) from problem
 

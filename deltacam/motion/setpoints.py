@@ -11,10 +11,12 @@ import numpy as np
 
 from deltacam.errors import InfeasibleError, ProcessError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Block, BlockKind, Cut, IntArray, Mode, Operation, Placement, Process
-from deltacam.motion.corners import pieces
+from deltacam.model import Array, Block, BlockKind, Cut, Held, IntArray, Mode, Operation, Placement, Process
+from deltacam.motion import explain
+from deltacam.motion.corners import Pace, pieces
 from deltacam.motion.path import Path, straight
 from deltacam.motion.route import Limits
+from deltacam.motion.run import Run
 from deltacam.motion.schedule import Move, schedule
 from deltacam.units import to_um
 
@@ -25,6 +27,7 @@ FIT_ALLOWANCE: Final = 2e-6
 """Part of the tolerance, m, that is kept for tracing the kerf path and for leaving out slivers."""
 
 _HERE: Final = 1e-9
+_SHORTER: Final = 0.9995
 _ROUNDING: Final = 1e-9
 
 
@@ -37,12 +40,14 @@ class Setpoints:
         power: (N,) of the laser's rated power.
         block: (N,) index into ``blocks``.
         blocks: in order, together covering every tick once.
+        held: what holds back the motion along every contour.
     """
 
     q: Array
     power: Array
     block: IntArray
     blocks: tuple[Block, ...]
+    held: tuple[Held, ...] = ()
 
 
 def plan_motion(
@@ -54,6 +59,7 @@ def plan_motion(
     drawing_error: float,
     mode: Mode = Mode.CUT,
     jobs: int | None = None,
+    what_if: bool | None = None,
     progress: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> Setpoints:
     """The setpoints that run the cuts in order, from rest at the park position to rest at the park position.
@@ -68,6 +74,7 @@ def plan_motion(
         drawing_error: how far the contours may lie from the file's exact geometry, m; part of the tolerance.
         mode: with ``DRY_RUN`` the laser stays off.
         jobs: processes, >= 1; None takes as many as pay.
+        what_if: whether to find out how long the cuts would take without each limit; None does where that is quick.
         progress: is told how many cuts or parts of cuts are done, and of how many.
 
     Raises:
@@ -86,12 +93,13 @@ def plan_motion(
         way = ways[cut.operation]
         power = way.power if mode is Mode.CUT else 0.0
         tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
-        ramps = robot.joints.max_jerk is not None
-        for path in pieces(curve, corner=process.corner, deviation=deviation, ramps=ramps, z=placement.z):
+        pace = _pace(robot, way.limits, (*curve.points[0], placement.z))
+        ramps = pace is not None
+        for path in pieces(curve, corner=process.corner, deviation=deviation, ramps=ramps, z=placement.z, pace=pace):
             tape.run(path, way.limits, way.kind, power=power, cut=cut, where=cut.where)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
-    return tape.setpoints(jobs=jobs, progress=progress)
+    return tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
 
 
 def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Placement) -> Setpoints:
@@ -115,7 +123,7 @@ def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Pla
         tape.travel(corner, tracing, where="the frame")
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
-    return tape.setpoints(jobs=1, progress=lambda _done, _total: None)
+    return tape.setpoints(jobs=1, what_if=False, progress=lambda _done, _total: None)
 
 
 def rapid_limits(robot: Robot) -> Limits:
@@ -155,6 +163,16 @@ class _Way(NamedTuple):
     limits: Limits
     power: float
     pierce: int
+
+
+def _pace(robot: Robot, limits: Limits, place: tuple[float, float, float]) -> Pace | None:
+    """What the tool can do in any direction at a place, (3,) m; None where there is no limit of jerk."""
+    if robot.joints.max_jerk is None:
+        return None
+    needed = np.linalg.norm(robot.inverse_jacobian([place])[0, :, :2], axis=1)
+    acceleration = min(limits.acceleration, float(np.min(robot.joints.max_acceleration / needed)))
+    jerk = float(np.min(robot.joints.max_jerk / needed))
+    return Pace(limits.speed, acceleration, jerk, 1.0 / robot.controller.rate_hz)
 
 
 def _way(operation: Operation, robot: Robot, process: Process) -> _Way:
@@ -223,25 +241,52 @@ class _Tape:
         end, _, _, _ = path.evaluate(np.array([len(path.length) - 1]), path.length[-1:])
         self.place = end[0, :2]
 
-    def setpoints(self, *, jobs: int | None, progress: Callable[[int, int], None]) -> Setpoints:
+    def setpoints(self, *, jobs: int | None, what_if: bool | None, progress: Callable[[int, int], None]) -> Setpoints:
         """Everything that was put on the tape, at every tick."""
-        moves = [step.motion for step in self._steps if isinstance(step.motion, Move)]
-        cuts = np.cumsum([step.cut is not None for step in self._steps if isinstance(step.motion, Move)])
+        moves = [step for step in self._steps if isinstance(step.motion, Move)]
+        cuts = np.cumsum([step.cut is not None for step in moves])
         total = int(cuts[-1]) if len(cuts) else 0
         progress(0, total)
-        runs = iter(schedule(moves, self.robot, jobs=jobs, progress=lambda done: progress(int(cuts[done - 1]), total)))
+        runs = schedule(
+            [step.motion for step in moves if isinstance(step.motion, Move)],
+            self.robot,
+            jobs=jobs,
+            what_if=what_if,
+            progress=lambda done: progress(int(cuts[done - 1]), total),
+        )
         rests = [(*step.motion.place, self.z) for step in self._steps if isinstance(step.motion, _Rest)]
-        held = iter(self.robot.inverse(np.array(rests).reshape(-1, 3)))
+        held, moved = iter(self.robot.inverse(np.array(rests).reshape(-1, 3))), iter(runs)
         q, power, blocks = [], [], list[Block]()
         ticks = 0
         for step in self._steps:
-            rows = next(runs).q if isinstance(step.motion, Move) else np.tile(next(held), (step.motion.ticks, 1))
+            rows = next(moved).q if isinstance(step.motion, Move) else np.tile(next(held), (step.motion.ticks, 1))
             q.append(rows)
             power.append(np.full(len(rows), step.power))
             _append(blocks, step, ticks, len(rows))
             ticks += len(rows)
         block = np.repeat(np.arange(len(blocks)), [one.last - one.first + 1 for one in blocks])
-        return Setpoints(np.concatenate(q), np.concatenate(power), block, tuple(blocks))
+        return Setpoints(np.concatenate(q), np.concatenate(power), block, tuple(blocks), _held(moves, runs))
+
+
+def _held(steps: Sequence[_Step], runs: Sequence[Run]) -> tuple[Held, ...]:
+    """What holds back the motion along every contour, the moves of each taken together."""
+    by_contour: dict[int, list[Run]] = {}
+    for step, run in zip(steps, runs, strict=True):
+        if step.cut is not None:
+            by_contour.setdefault(step.cut.contour, []).append(run)
+    return tuple(_held_in(contour, found) for contour, found in by_contour.items())
+
+
+def _held_in(contour: int, runs: Sequence[Run]) -> Held:
+    time = sum(run.duration for run in runs)
+    bound = zip(explain.NAMES, np.sum([run.held for run in runs], axis=0).tolist(), strict=True)
+    without = zip(explain.KINDS, np.sum([run.without for run in runs], axis=0).tolist(), strict=False)
+    return Held(
+        contour,
+        time,
+        {name: value for name, value in bound if value > 0.0},
+        {name: value for name, value in without if value < _SHORTER * time},
+    )
 
 
 def _append(blocks: list[Block], step: _Step, first: int, ticks: int) -> None:

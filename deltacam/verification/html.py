@@ -11,6 +11,7 @@ import numpy as np
 from deltacam.model import Array, Check, Drawing, LedgerEntry, Mode, Operation, Report
 from deltacam.program.program import Program
 from deltacam.units import to_mm
+from deltacam.verification import held_back
 from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.picture import draw, shown, tool_speeds
 
@@ -78,6 +79,7 @@ def to_html(report: Report, program: Program, *, drawing: Drawing | None, title:
         _section("Motion", _charts(evidence)),
         _section("Checks", _checks(report.checks, evidence.rate)),
         _section("Findings", _findings(report)),
+        _section("What limits the speed", _table(held_back.HEADS, held_back.table(report.held)) if report.held else ""),
         _section("Contours", _contours(evidence, drawing)),
         _section("Entities of the drawing", _ledger(report.ledger)),
         _section("All figures", _table(("figure", "value"), _figures(report.summary))),

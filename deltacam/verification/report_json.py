@@ -26,4 +26,8 @@ def to_dict(report: Report) -> dict[str, Any]:
         "summary": dict(report.summary),
         "ledger": [asdict(entry) for entry in report.ledger],
         "findings": [asdict(finding) for finding in report.findings],
+        "held": [
+            {"contour": one.contour, "time_s": one.time, "bound_s": dict(one.bound), "without_s": dict(one.without)}
+            for one in report.held
+        ],
     }

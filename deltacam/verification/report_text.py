@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from deltacam.model import Check, Report
 from deltacam.plain import plain
+from deltacam.verification.held_back import in_words
 
 _WIDEST_PLACE: Final = 100  # characters
 _MOST_FINDINGS: Final = 8
@@ -18,7 +19,8 @@ def to_text(report: Report) -> str:
     """The report as lines of text with a line feed at the end; nothing in it makes a terminal do anything."""
     rate = report.summary["program"]["rate_hz"]
     failed = [check for check in report.checks if not check.passed]
-    lines = [_verdict(report, failed), *_figures(report.summary), ""]
+    lines = [_verdict(report, failed), *_figures(report.summary)]
+    lines += [f"  held by  {in_words(report.held)}", ""] if report.held else [""]
     lines += [*_failures(failed, rate), *_in_two_columns([check for check in report.checks if check.passed])]
     for finding in report.findings[:_MOST_FINDINGS]:
         place = f" ({plain(finding.where)})" if finding.where else ""

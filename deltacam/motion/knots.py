@@ -1,0 +1,133 @@
+"""Bases for a smooth motion: with knots close to each other where the acceleration changes, and far apart elsewhere."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from deltacam.model import Array, BoolArray, IntArray
+from deltacam.motion.along import Along
+from deltacam.motion.law import TimeLaw
+from deltacam.motion.route import Grid, Route
+from deltacam.motion.rows import Rows
+from deltacam.motion.tempo import Base, Tempo
+
+if TYPE_CHECKING:
+    from deltacam.robot.robot import Robot
+
+COARSEST: Final = 4.0
+"""Largest distance of knots, ticks, where nothing happens."""
+
+_FINEST: Final = 0.1  # ticks
+_GROWTH: Final = 0.15  # of the distance of knots per distance from a place where it must be small
+_PER_RAMP: Final = 6.0  # knots while the acceleration is built up
+_PER_ROUGH_RAMP: Final = 4.0
+_PER_CLOTHOID: Final = 2.5
+_ON_CLOTHOIDS: Final = 2.0  # times as far as where the acceleration changes
+_WINDOW: Final = 5.0  # in distances of knots
+_BUSY: Final = 0.3  # of the limit of jerk
+_FEWEST: Final = 8
+
+
+def ramps(law: TimeLaw, rows: Rows, robot: Robot) -> Array:
+    """How long every move takes to build up its largest acceleration, (K,) s."""
+    acceleration = np.abs(rows.joint_a[1] * law.acceleration[:, None] + rows.joint_b[1] * law.squared[:-1, None])
+    taken = acceleration * np.asarray(robot.joints.max_acceleration) / np.asarray(robot.joints.max_jerk)
+    return np.maximum.reduceat(taken.max(axis=1), law.rest[:-1])
+
+
+def averaged(route: Route, grid: Grid, law: TimeLaw, ramps: Array, robot: Robot) -> Base:
+    """The law, its speed averaged over a window of some knots."""
+    jump = np.abs(np.diff(law.acceleration, prepend=0.0)) > 0.2 * route.acceleration[grid.segment]
+    begin, durations = law.time[law.rest[:-1]], law.durations
+    move = np.repeat(np.arange(len(ramps)), np.diff(law.rest))
+    samples = _Samples(move, law.time[:-1] - begin[move], grid.segment, np.sqrt(law.squared[:-1]), jump)
+    spacing = samples.spacing(route, ramps / _PER_ROUGH_RAMP, robot)
+    margin = 0.5 * _WINDOW * spacing[law.rest[:-1]]
+    first, width = _knots(samples, spacing, durations, margin)
+
+    def speed(move: IntArray, place: Array) -> Array:
+        at = place - margin[move]
+        window = _WINDOW * np.interp(begin[move] + np.clip(at, 0.0, durations[move]), law.time[:-1], spacing)
+        ends = (np.clip(at + side * window, 0.0, durations[move]) for side in (-0.5, 0.5))
+        before, after = (law.at(move, end) for end in ends)
+        return (after - before) / window
+
+    distance = law.distance[law.rest]
+    return Base.through(first, width, speed, distance[:-1], np.diff(distance))
+
+
+def again(route: Route, tempo: Tempo, ramps: Array, robot: Robot) -> Base:
+    """The motion of a tempo as a base with knots where it needs them."""
+    base = tempo.base
+    motion = tempo.motion(np.arange(len(base.width)), np.zeros(len(base.width)))
+    along = Along.of(route, robot, motion)
+    busy = (np.abs(along.joints[2]) / np.asarray(robot.joints.max_jerk)).max(axis=1) > _BUSY
+    segment, _ = route.path.locate(motion.distance)
+    time = tempo.time[:-1] - tempo.time[base.first[base.move]]
+    samples = _Samples(base.move, time, segment, motion.speed, busy)
+    first, width = _knots(
+        samples, samples.spacing(route, ramps / _PER_RAMP, robot), tempo.durations, np.zeros(len(ramps))
+    )
+    start = base.distance[base.first[:-1]]
+    length = np.diff(np.append(start, route.path.total))
+    return Base.through(first, width, lambda move, at: tempo.motion(*tempo.locate(move, at)).speed, start, length)
+
+
+class _Samples(NamedTuple):
+    """Places along moves in their order, (N,) each.
+
+    Attributes:
+        move: of each.
+        time: s since the move began.
+        segment: of the path.
+        speed: m/s.
+        busy: whether the acceleration changes there.
+    """
+
+    move: IntArray
+    time: Array
+    segment: IntArray
+    speed: Array
+    busy: BoolArray
+
+    def spacing(self, route: Route, least: Array, robot: Robot) -> Array:
+        """How far apart knots may be at each sample, (N,) s.
+
+        That is ``least`` (K,) s where the acceleration changes, and less on short clothoids.
+        """
+        tick = 1.0 / robot.controller.rate_hz
+        path, ends = route.path, np.flatnonzero(np.diff(self.move, prepend=-1, append=-1))
+        busy = self.busy.copy()
+        busy[ends[:-1]] = busy[ends[1:] - 1] = True
+        wanted = np.where(busy, least[self.move], COARSEST * tick)
+        passing = path.length[self.segment] / np.maximum(self.speed, 1e-9) / _PER_CLOTHOID
+        passing = np.minimum(passing, _ON_CLOTHOIDS * least[self.move])
+        wanted = np.where(path.sharpness[self.segment] == 0.0, wanted, np.minimum(wanted, passing))
+        wanted = np.clip(wanted, _FINEST * tick, COARSEST * tick)
+        # Away from a place it grows evenly. Moves follow each other with a pause in which it is as large as it may be.
+        time = self.time + self.move * COARSEST * tick / _GROWTH
+        time = time + np.concatenate([[0.0], np.cumsum(np.where(np.diff(self.move) > 0, self.time[:-1], 0.0))])
+        after = np.minimum.accumulate(wanted - _GROWTH * time) + _GROWTH * time
+        before = np.minimum.accumulate((wanted + _GROWTH * time)[::-1])[::-1] - _GROWTH * time
+        return np.asarray(np.minimum(after, before))
+
+
+def _knots(samples: _Samples, spacing: Array, durations: Array, margin: Array) -> tuple[IntArray, Array]:
+    """The first interval of every move, and the widths of the intervals, s.
+
+    The intervals cover the durations (K,) s and a ``margin`` (K,) s before and after.
+    """
+    firsts = np.flatnonzero(np.diff(samples.move, prepend=-1))
+    ends = np.append(firsts[1:], len(samples.move))
+    widths = []
+    for move, (first, end) in enumerate(zip(firsts.tolist(), ends.tolist(), strict=True)):
+        time = np.concatenate(
+            [[-margin[move]], samples.time[first:end], [durations[move], durations[move] + margin[move]]]
+        )
+        apart = np.concatenate([[spacing[first]], spacing[first:end], [spacing[end - 1]] * 2])
+        passed = np.concatenate([[0.0], np.cumsum(np.diff(time) * 0.5 * (1.0 / apart[1:] + 1.0 / apart[:-1]))])
+        count = max(_FEWEST, int(np.ceil(passed[-1])))
+        widths.append(np.diff(np.interp(np.linspace(0.0, passed[-1], count + 1), passed, time)))
+    return np.concatenate([[0], np.cumsum([len(one) for one in widths])]), np.concatenate(widths)
