@@ -41,6 +41,9 @@ KINDS: Final = (
 )
 """What `without` leaves out in turn."""
 
+_KIND_OF: Final = {
+    f"joint {joint} {what}": f"joint {what}" for joint in "123" for what in ("speed", "acceleration", "jerk")
+}
 _BINDS: Final = 0.97
 _INSIDE: Final = (0.25, 0.75)  # of every interval
 _UNBOUND: Final = 1e6
@@ -68,18 +71,25 @@ class _Places(NamedTuple):
     tool: Array
 
 
-def held(route: Route, grid: Grid, rows: Rows, robot: Robot, law: TimeLaw | Tempo) -> Array:
-    """For how long each of `NAMES` is at 97 % of its limit or more, and nearest to it, in every move: (K, names) s."""
+def held(route: Route, grid: Grid, rows: Rows, robot: Robot, law: TimeLaw | Tempo) -> tuple[Array, frozenset[str]]:
+    """What holds back every move, and for how long.
+
+    Returns:
+        for how long each of `NAMES` is at 97 % of its limit or more, and nearest to it, in every move, (K, names) s;
+        and the `KINDS` that are so anywhere, also on curves that smooth corners.
+    """
     at = _of_tempo(route, robot, law) if isinstance(law, Tempo) else _of_law(route, grid, rows, robot, law)
     speed, rest = at.joints[:, :3], at.joints[:, 3:]
     chord = np.where(at.total > np.maximum(at.feed, speed.max(axis=1)) * (1.0 + 1e-9), at.total, 0.0)
     shares = np.column_stack([at.feed, chord, speed, at.tool, rest])
     name = np.where(shares.max(axis=1) >= _BINDS, shares.argmax(axis=1), NAMES.index("none"))
+    found = {_KIND_OF.get(NAMES[index], NAMES[index]) for index in np.unique(name)}
     smoothing = (route.path.sharpness[at.segment] != 0.0) & (at.feed < _BINDS)
     name[smoothing] = NAMES.index("corners")
+    kinds = frozenset(found | ({"corners"} if smoothing.any() else set()))
     times = np.zeros((len(law.durations), len(NAMES)))
     np.add.at(times, (at.move, name), at.taken)
-    return times
+    return times, kinds
 
 
 def _of_law(route: Route, grid: Grid, rows: Rows, robot: Robot, law: TimeLaw) -> _Places:
@@ -120,16 +130,21 @@ def _of_tempo(route: Route, robot: Robot, tempo: Tempo) -> _Places:
     )
 
 
-def without(route: Route, grid: Grid, rows: Rows, robot: Robot, times: Array) -> Array:
+def without(route: Route, grid: Grid, rows: Rows, robot: Robot, times: Array, kinds: frozenset[str]) -> Array:
     """About how long every move would take without each of `KINDS`: (K, kinds) s.
 
     What a limit costs is found by solving again without it, all limits of jerk left out; it is then taken from the time
-    that the move really takes, ``times`` (K,) s.
+    that the move really takes, ``times`` (K,) s. Limits other than ``kinds`` never bind, so that they cost nothing.
     """
     quick = solve(grid, rows).durations
-    found = [times - quick + solve(grid, _lifted(rows, route, grid, robot, kind)).durations for kind in KINDS]
-    jerk = KINDS.index("joint jerk")
-    found[jerk] = np.minimum(quick, times)
+    found = []
+    for kind in KINDS:
+        if kind == "joint jerk":
+            found.append(quick)
+        elif kind in kinds:
+            found.append(times - quick + solve(grid, _lifted(rows, route, grid, robot, kind)).durations)
+        else:
+            found.append(times)
     return np.minimum(np.stack(found, axis=1), times[:, None])
 
 

@@ -62,7 +62,7 @@ def limited(route: Route, grid: Grid, rows: Rows, robot: Robot, slowness: Array)
     steady = _steady(route, grid, robot)
     law = solve(grid, replace(rows, bound=np.minimum(rows.bound, steady)), slowness)
     ramps = knots.ramps(law, rows, robot)
-    base = knots.averaged(route, grid, law, ramps, robot)
+    base = knots.averaged(route, grid, law, ramps)
     slower = slowness[_interval(grid, base)] ** 2
     all_of_it = _Shares(*np.ones((3, len(base.width))))
     rough = _fastest(route, robot, base, all_of_it, slower, gap=_ROUGH_GAP)

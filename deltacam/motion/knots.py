@@ -16,10 +16,10 @@ from deltacam.motion.tempo import Base, Tempo
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
-COARSEST: Final = 4.0
-"""Largest distance of knots, ticks, where nothing happens."""
+COARSEST: Final = 0.02
+"""Largest distance of knots, s, where nothing happens."""
 
-_FINEST: Final = 0.1  # ticks
+_FINEST: Final = 0.25e-3  # s
 _GROWTH: Final = 0.15  # of the distance of knots per distance from a place where it must be small
 _PER_RAMP: Final = 6.0  # knots while the acceleration is built up
 _PER_ROUGH_RAMP: Final = 4.0
@@ -37,13 +37,13 @@ def ramps(law: TimeLaw, rows: Rows, robot: Robot) -> Array:
     return np.maximum.reduceat(taken.max(axis=1), law.rest[:-1])
 
 
-def averaged(route: Route, grid: Grid, law: TimeLaw, ramps: Array, robot: Robot) -> Base:
+def averaged(route: Route, grid: Grid, law: TimeLaw, ramps: Array) -> Base:
     """The law, its speed averaged over a window of some knots."""
     jump = np.abs(np.diff(law.acceleration, prepend=0.0)) > 0.2 * route.acceleration[grid.segment]
     begin, durations = law.time[law.rest[:-1]], law.durations
     move = np.repeat(np.arange(len(ramps)), np.diff(law.rest))
     samples = _Samples(move, law.time[:-1] - begin[move], grid.segment, np.sqrt(law.squared[:-1]), jump)
-    spacing = samples.spacing(route, ramps / _PER_ROUGH_RAMP, robot)
+    spacing = samples.spacing(route, ramps / _PER_ROUGH_RAMP)
     margin = 0.5 * _WINDOW * spacing[law.rest[:-1]]
     first, width = _knots(samples, spacing, durations, margin)
 
@@ -67,9 +67,7 @@ def again(route: Route, tempo: Tempo, ramps: Array, robot: Robot) -> Base:
     segment, _ = route.path.locate(motion.distance)
     time = tempo.time[:-1] - tempo.time[base.first[base.move]]
     samples = _Samples(base.move, time, segment, motion.speed, busy)
-    first, width = _knots(
-        samples, samples.spacing(route, ramps / _PER_RAMP, robot), tempo.durations, np.zeros(len(ramps))
-    )
+    first, width = _knots(samples, samples.spacing(route, ramps / _PER_RAMP), tempo.durations, np.zeros(len(ramps)))
     start = base.distance[base.first[:-1]]
     length = np.diff(np.append(start, route.path.total))
     return Base.through(first, width, lambda move, at: tempo.motion(*tempo.locate(move, at)).speed, start, length)
@@ -92,22 +90,21 @@ class _Samples(NamedTuple):
     speed: Array
     busy: BoolArray
 
-    def spacing(self, route: Route, least: Array, robot: Robot) -> Array:
+    def spacing(self, route: Route, least: Array) -> Array:
         """How far apart knots may be at each sample, (N,) s.
 
         That is ``least`` (K,) s where the acceleration changes, and less on short clothoids.
         """
-        tick = 1.0 / robot.controller.rate_hz
         path, ends = route.path, np.flatnonzero(np.diff(self.move, prepend=-1, append=-1))
         busy = self.busy.copy()
         busy[ends[:-1]] = busy[ends[1:] - 1] = True
-        wanted = np.where(busy, least[self.move], COARSEST * tick)
+        wanted = np.where(busy, least[self.move], COARSEST)
         passing = path.length[self.segment] / np.maximum(self.speed, 1e-9) / _PER_CLOTHOID
         passing = np.minimum(passing, _ON_CLOTHOIDS * least[self.move])
         wanted = np.where(path.sharpness[self.segment] == 0.0, wanted, np.minimum(wanted, passing))
-        wanted = np.clip(wanted, _FINEST * tick, COARSEST * tick)
+        wanted = np.clip(wanted, _FINEST, COARSEST)
         # Away from a place it grows evenly. Moves follow each other with a pause in which it is as large as it may be.
-        time = self.time + self.move * COARSEST * tick / _GROWTH
+        time = self.time + self.move * COARSEST / _GROWTH
         time = time + np.concatenate([[0.0], np.cumsum(np.where(np.diff(self.move) > 0, self.time[:-1], 0.0))])
         after = np.minimum.accumulate(wanted - _GROWTH * time) + _GROWTH * time
         before = np.minimum.accumulate((wanted + _GROWTH * time)[::-1])[::-1] - _GROWTH * time

@@ -63,8 +63,10 @@ def run(route: Route, robot: Robot, *, what_if: bool = False) -> list[Run]:
         if (slower == 1.0).all():
             break
         slowness *= slower
-    held = explain.held(route, grid, rows, robot, law)
-    without = explain.without(route, grid, rows, robot, law.durations) if what_if else np.zeros((len(held), 0))
+    held, kinds = explain.held(route, grid, rows, robot, law)
+    without = np.zeros((len(held), 0))
+    if what_if:
+        without = explain.without(route, grid, rows, robot, law.durations, kinds)
     return [Run(*one) for one in zip(setpoints, law.durations.tolist(), held, without, strict=True)]
 
 

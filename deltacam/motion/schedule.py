@@ -30,7 +30,8 @@ CHUNK: Final = 20_000
 """About how many gridpoints are planned at a time; each takes about 3 kB."""
 
 _PER_SEGMENT: Final = 10
-_PAYS: Final = 6
+_PAYS: Final = 6  # chunks, for more than one process
+_QUICK: Final = 2  # chunks, for times without each limit
 
 
 class Move(NamedTuple):
@@ -89,7 +90,7 @@ def _chunks(moves: Sequence[Move]) -> Iterator[list[Move]]:
 
 
 def _few(chunks: Sequence[Sequence[Move]]) -> bool:
-    return len(chunks) <= _PAYS
+    return len(chunks) <= _QUICK
 
 
 def _run_chunk(robot: Robot, what_if: bool, moves: Sequence[Move]) -> list[Run]:
