@@ -29,9 +29,9 @@ class Along(NamedTuple):
     cap: Array
 
     @classmethod
-    def of(cls, route: Route, robot: Robot, motion: Motion) -> Along:
-        """For a motion anywhere along the route."""
-        return cls.at(route, robot, motion, *route.path.locate(motion.distance))
+    def of(cls, route: Route, robot: Robot, motion: Motion, move: IntArray) -> Along:
+        """For a motion anywhere along moves (N,)."""
+        return cls.at(route, robot, motion, *route.locate(move, motion.distance))
 
     @classmethod
     def at(cls, route: Route, robot: Robot, motion: Motion, segment: IntArray, place: Array) -> Along:

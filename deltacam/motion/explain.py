@@ -115,7 +115,7 @@ def _of_tempo(route: Route, robot: Robot, tempo: Tempo) -> _Places:
     count = len(tempo.base.width)
     interval = np.tile(np.arange(count), len(_INSIDE))
     motion = tempo.motion(interval, np.repeat(_INSIDE, count))
-    segment, place = route.path.locate(motion.distance)
+    segment, place = route.locate(tempo.base.move[interval], motion.distance)
     along = Along.at(route, robot, motion, segment, place)
     limits = (robot.joints.max_speed, robot.joints.max_acceleration, robot.joints.max_jerk or (np.inf,) * 3)
     joints = [np.abs(one) / limit for one, limit in zip(along.joints, limits, strict=True)]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
 _ROUNDS: Final = 2
-_CHECKED: Final = (np.arange(8) + 0.5) / 8.0
+_CHECKED: Final = (0.0, 0.09, 0.19, 0.31, 0.43, 0.57, 0.69, 0.81, 0.91, 1.0)
 _INSIDE: Final = 0.9
 _AROUND: Final = 6
 _INSIDE_AGAIN: Final = 0.98
@@ -62,7 +62,7 @@ def limited(route: Route, grid: Grid, rows: Rows, robot: Robot, slowness: Array)
     steady = _steady(route, grid, robot)
     law = solve(grid, replace(rows, bound=np.minimum(rows.bound, steady)), slowness)
     ramps = knots.ramps(law, rows, robot)
-    base = knots.averaged(route, grid, law, ramps)
+    base = knots.averaged(route, grid, law, steady[0], ramps)
     slower = slowness[_interval(grid, base)] ** 2
     all_of_it = _Shares(*np.ones((3, len(base.width))))
     rough = _fastest(route, robot, base, all_of_it, slower, gap=_ROUGH_GAP)
@@ -130,7 +130,7 @@ def _stations(route: Route, robot: Robot, base: Base, lower: _Shares, slower: Ar
     met, place, before = _meetings(route, base)
     u[1:3, met] = place
     motion = base.at(np.tile(np.arange(shape[1]), shape[0]), u.ravel())
-    segment, inside = route.path.locate(motion.distance)
+    segment, inside = route.locate(np.tile(base.move, shape[0]), motion.distance)
     one, other = shape[1] + met, 2 * shape[1] + met
     segment[one], inside[one] = before, route.path.length[before]
     segment[other], inside[other] = before + 1, 0.0
@@ -174,7 +174,7 @@ def _shares(route: Route, robot: Robot, tempo: Tempo, slower: Array) -> _Shares:
     count = len(tempo.base.width)
     interval = np.tile(np.arange(count), len(_CHECKED))
     motion = tempo.motion(interval, np.repeat(_CHECKED, count))
-    along = Along.of(route, robot, motion)
+    along = Along.of(route, robot, motion, tempo.base.move[interval])
     slower = slower[interval]
     speed = motion.speed / np.sqrt(slower * along.bound)
     joints = np.abs(along.joints[1]) / np.asarray(robot.joints.max_acceleration)

@@ -24,9 +24,9 @@ _GROWTH: Final = 0.15  # of the distance of knots per distance from a place wher
 _PER_RAMP: Final = 6.0  # knots while the acceleration is built up
 _PER_ROUGH_RAMP: Final = 4.0
 _PER_CLOTHOID: Final = 2.5
-_ON_CLOTHOIDS: Final = 2.0  # times as far as where the acceleration changes
 _WINDOW: Final = 5.0  # in distances of knots
 _BUSY: Final = 0.3  # of the limit of jerk
+_JUMP: Final = 0.2  # of the limit of acceleration
 _FEWEST: Final = 8
 
 
@@ -37,12 +37,21 @@ def ramps(law: TimeLaw, rows: Rows, robot: Robot) -> Array:
     return np.maximum.reduceat(taken.max(axis=1), law.rest[:-1])
 
 
-def averaged(route: Route, grid: Grid, law: TimeLaw, ramps: Array) -> Base:
-    """The law, its speed averaged over a window of some knots."""
-    jump = np.abs(np.diff(law.acceleration, prepend=0.0)) > 0.2 * route.acceleration[grid.segment]
+def averaged(route: Route, grid: Grid, law: TimeLaw, steady: Array, ramps: Array) -> Base:
+    """The law, its speed averaged over a window of some knots.
+
+    Args:
+        route: the moves.
+        grid: of the route.
+        law: along it.
+        steady: (I,) m2/s2, the squared speed at which steady motion needs all the jerk there is.
+        ramps: (K,) s, as `ramps` gives them.
+    """
+    busy = np.abs(np.diff(law.acceleration, prepend=0.0)) > _JUMP * route.acceleration[grid.segment]
+    busy |= (law.squared[:-1] / steady) ** 1.5 > _BUSY
     begin, durations = law.time[law.rest[:-1]], law.durations
     move = np.repeat(np.arange(len(ramps)), np.diff(law.rest))
-    samples = _Samples(move, law.time[:-1] - begin[move], grid.segment, np.sqrt(law.squared[:-1]), jump)
+    samples = _Samples(move, law.time[:-1] - begin[move], grid.segment, np.sqrt(law.squared[:-1]), busy)
     spacing = samples.spacing(route, ramps / _PER_ROUGH_RAMP)
     margin = 0.5 * _WINDOW * spacing[law.rest[:-1]]
     first, width = _knots(samples, spacing, durations, margin)
@@ -62,9 +71,9 @@ def again(route: Route, tempo: Tempo, ramps: Array, robot: Robot) -> Base:
     """The motion of a tempo as a base with knots where it needs them."""
     base = tempo.base
     motion = tempo.motion(np.arange(len(base.width)), np.zeros(len(base.width)))
-    along = Along.of(route, robot, motion)
+    along = Along.of(route, robot, motion, base.move)
     busy = (np.abs(along.joints[2]) / np.asarray(robot.joints.max_jerk)).max(axis=1) > _BUSY
-    segment, _ = route.path.locate(motion.distance)
+    segment, _ = route.locate(base.move, motion.distance)
     time = tempo.time[:-1] - tempo.time[base.first[base.move]]
     samples = _Samples(base.move, time, segment, motion.speed, busy)
     first, width = _knots(samples, samples.spacing(route, ramps / _PER_RAMP), tempo.durations, np.zeros(len(ramps)))
@@ -100,7 +109,6 @@ class _Samples(NamedTuple):
         busy[ends[:-1]] = busy[ends[1:] - 1] = True
         wanted = np.where(busy, least[self.move], COARSEST)
         passing = path.length[self.segment] / np.maximum(self.speed, 1e-9) / _PER_CLOTHOID
-        passing = np.minimum(passing, _ON_CLOTHOIDS * least[self.move])
         wanted = np.where(path.sharpness[self.segment] == 0.0, wanted, np.minimum(wanted, passing))
         wanted = np.clip(wanted, _FINEST, COARSEST)
         # Away from a place it grows evenly. Moves follow each other with a pause in which it is as large as it may be.

@@ -80,6 +80,19 @@ class Route:
             *np.repeat(columns, counts, axis=0).T,
         )
 
+    def locate(self, move: IntArray, distance: Array) -> tuple[IntArray, Array]:
+        """The segments of moves (N,) that hold places, and how far into them these lie.
+
+        Args:
+            move: (N,) of each place: the end of one move and the start of the next are at the same distance.
+            distance: (N,) m from the start of the route.
+        """
+        ends = np.cumsum(self.path.length)
+        segment = np.searchsorted(ends, distance, side="right")
+        segment = np.clip(segment, self.first[move], self.first[move + 1] - 1)
+        inside = distance - (ends[segment] - self.path.length[segment])
+        return segment, np.clip(inside, 0.0, self.path.length[segment])
+
 
 def _braking(route: Route, robot: Robot) -> Array:
     """About the way in which the tool can stop from the speed that it may have near every segment, (M,) m, doubled.
