@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from deltacam.model import Array
+from deltacam.model import Array, Held
 from deltacam.motion import explain
 from deltacam.motion.jerk import limited
 from deltacam.motion.law import Law, TimeLaw
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 _ROUNDS: Final = 20
 _STRICTER: Final = 0.995
+_SHORTER: Final = 0.9995
 
 
 class Run(NamedTuple):
@@ -37,6 +39,12 @@ class Run(NamedTuple):
     duration: float
     held: Array
     without: Array
+
+
+def joined(runs: Sequence[Run]) -> Run:
+    """The runs of moves that follow each other as one."""
+    q, durations, held, without = zip(*runs, strict=True)
+    return Run(np.concatenate(q), sum(durations), np.sum(held, axis=0), np.sum(without, axis=0))
 
 
 def run(route: Route, robot: Robot, *, what_if: bool = False) -> list[Run]:
@@ -88,3 +96,16 @@ def _slower(route: Route, grid: Grid, law: Law, robot: Robot, setpoints: tuple[A
         needed = np.sqrt(allowed[tick] / off[tick]) * _STRICTER
         factor[first:end] = np.minimum(factor[first:end], needed)
     return factor
+
+
+def held_along(contour: int, runs: Sequence[Run]) -> Held:
+    """What holds back the motion along a contour, its runs taken together."""
+    time = sum(run.duration for run in runs)
+    bound = zip(explain.NAMES, np.sum([run.held for run in runs], axis=0).tolist(), strict=True)
+    without = zip(explain.KINDS, np.sum([run.without for run in runs], axis=0).tolist(), strict=False)
+    return Held(
+        contour,
+        time,
+        {name: value for name, value in bound if value > 0.0},
+        {name: value for name, value in without if value < _SHORTER * time},
+    )

@@ -39,6 +39,9 @@ def chord_deviation(
 ) -> tuple[Array, Array]:
     """How far the controller leaves the path half-way between ticks.
 
+    Where one move ends and the next begins the controller may or may not rest for some ticks, which under cubic
+    interpolation makes a difference; the larger of both counts.
+
     Args:
         path: of the moves.
         law: of the moves.
@@ -52,19 +55,29 @@ def chord_deviation(
     counts = np.array([len(q) for q in setpoints])
     move = np.repeat(np.arange(len(counts)), counts)
     tick = np.arange(len(move)) - np.repeat(np.cumsum(counts) - counts, counts)
-    q = np.concatenate([halfway(np.vstack([q, end]), robot) for q, end in zip(setpoints, ends, strict=True)])
-    position, tangent, distance = _places(path, law, move, (tick + 0.5) / counts[move])
+    place = _places(path, law, move, (tick + 0.5) / counts[move])
+    rests = [halfway(np.vstack([q, end]), robot) for q, end in zip(setpoints, ends, strict=True)]
+    off = _off(path, robot, np.concatenate(rests), place)
+    if robot.controller.interpolation != "linear":
+        goes_on = halfway(np.concatenate([*setpoints, ends[-1:]]), robot)
+        off = np.maximum(off, _off(path, robot, goes_on, place))
+    return off, place[2]
+
+
+def _off(path: Path, robot: Robot, q: Array, place: tuple[Array, Array, Array]) -> Array:
+    """How far the tool is from the path at joint angles q (N, 3) rad, near places on it, (N,) m."""
+    position, tangent, distance = place
     tool = robot.forward(q)
     # The point of the path beside the tool, and the part across the path of the way there.
     along = np.sum((tool - position) * tangent, axis=1)
     position, tangent, _, _ = path.evaluate(*path.locate(np.clip(distance + along, 0.0, path.total)))
     off = tool - position
     off -= np.sum(off * tangent, axis=1, keepdims=True) * tangent
-    return np.linalg.norm(off, axis=1), distance
+    return np.asarray(np.linalg.norm(off, axis=1))
 
 
 def halfway(q: Array, robot: Robot) -> Array:
-    """Where the joints are half-way between ticks, (N - 1, 3) rad, of a move ``q`` (N, 3) rad from rest to rest."""
+    """Where the joints are half-way between ticks, (N - 1, 3) rad, of setpoints ``q`` (N, 3) rad with rests around."""
     middle = 0.5 * (q[:-1] + q[1:])
     if robot.controller.interpolation == "linear":
         return middle

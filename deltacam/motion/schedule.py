@@ -17,11 +17,16 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+import numpy as np
+
 from deltacam.errors import InfeasibleError
+from deltacam.geometry import curve as curves
+from deltacam.model import Corner, Curve
+from deltacam.motion.corners import Pace, pieces
 from deltacam.motion.parametrize import UndrivableError, load_solver
 from deltacam.motion.path import Path
 from deltacam.motion.route import SPACING, Limits, Route
-from deltacam.motion.run import Run, run
+from deltacam.motion.run import Run, joined, run
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
@@ -30,16 +35,58 @@ CHUNK: Final = 20_000
 """About how many gridpoints are planned at a time; each takes about 3 kB."""
 
 _PER_SEGMENT: Final = 10
+_BLENDED: Final = 4  # segments of a path per segment of a curve
 _PAYS: Final = 6  # chunks, for more than one process
 _QUICK: Final = 2  # chunks, for times without each limit
 
 
-class Move(NamedTuple):
-    """One path to be run from rest to rest; ``where`` names it in an error."""
+class Drawn(NamedTuple):
+    """A curve that is still to be made drivable, with what `corners.pieces` takes; ``z`` m is the height."""
 
-    path: Path
+    curve: Curve
+    corner: Corner
+    deviation: float
+    pace: Pace | None
+    z: float
+
+    def paths(self) -> tuple[Path, ...]:
+        """The smooth paths along the curve, each to be run from rest to rest."""
+        return pieces(
+            self.curve,
+            corner=self.corner,
+            deviation=self.deviation,
+            ramps=self.pace is not None,
+            z=self.z,
+            pace=self.pace,
+        )
+
+
+class Move(NamedTuple):
+    """One path to be run from rest to rest, or a curve to be run in as few such parts as it takes.
+
+    Attributes:
+        path: or curve.
+        limits: of the tool along it.
+        where: names it in an error.
+    """
+
+    path: Path | Drawn
     limits: Limits
     where: str
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """What is run from rest to rest."""
+        return self.path.paths() if isinstance(self.path, Drawn) else (self.path,)
+
+    @property
+    def gridpoints(self) -> float:
+        """About how many it has."""
+        if isinstance(self.path, Drawn):
+            length, segments = curves.length(self.path.curve), _BLENDED * len(self.path.curve.bulges)
+        else:
+            length, segments = self.path.total, len(self.path.length)
+        return length / SPACING + _PER_SEGMENT * segments
 
 
 def schedule(
@@ -81,7 +128,7 @@ def _chunks(moves: Sequence[Move]) -> Iterator[list[Move]]:
     points = 0.0
     for move in moves:
         chunk.append(move)
-        points += move.path.total / SPACING + _PER_SEGMENT * len(move.path.length)
+        points += move.gridpoints
         if points >= CHUNK:
             yield chunk
             chunk, points = [], 0.0
@@ -94,11 +141,15 @@ def _few(chunks: Sequence[Sequence[Move]]) -> bool:
 
 
 def _run_chunk(robot: Robot, what_if: bool, moves: Sequence[Move]) -> list[Run]:
-    route = Route.of([(move.path, move.limits) for move in moves])
+    paths = [move.paths for move in moves]
+    parts = [(path, move.limits) for move, own in zip(moves, paths, strict=True) for path in own]
+    ends = np.cumsum([len(own) for own in paths])
     try:
-        return run(route, robot, what_if=what_if)
+        runs = run(Route.of(parts), robot, what_if=what_if)
     except UndrivableError as problem:
-        raise InfeasibleError(problem.what, where=moves[problem.move].where, hint=problem.hint) from problem
+        move = moves[int(np.searchsorted(ends, problem.move, side="right"))]
+        raise InfeasibleError(problem.what, where=move.where, hint=problem.hint) from problem
+    return [joined(runs[end - len(own) : end]) for end, own in zip(ends.tolist(), paths, strict=True)]
 
 
 @contextmanager
@@ -112,6 +163,7 @@ def _workers(processes: int) -> Iterator[Callable[..., Iterator[list[Run]]]]:
     # A fork is ready at once, but only safe where no other thread holds a lock.
     forked = "fork" in multiprocessing.get_all_start_methods() and threading.active_count() == 1
     context = multiprocessing.get_context("fork" if forked else "spawn")
+    others = multiprocessing.active_children()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of fork beside the idle threads of the linear algebra
         with ProcessPoolExecutor(processes, mp_context=context, initializer=_start_worker) as pool:
@@ -119,6 +171,9 @@ def _workers(processes: int) -> Iterator[Callable[..., Iterator[list[Run]]]]:
                 yield pool.map
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
+                for worker in multiprocessing.active_children():
+                    if worker not in others:
+                        worker.terminate()  # rather than wait for chunks that nobody wants any more
                 raise
 
 

@@ -12,12 +12,11 @@ import numpy as np
 from deltacam.errors import InfeasibleError, ProcessError
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Block, BlockKind, Cut, Held, IntArray, Mode, Operation, Placement, Process
-from deltacam.motion import explain
-from deltacam.motion.corners import Pace, pieces
+from deltacam.motion.corners import Pace
 from deltacam.motion.path import Path, straight
 from deltacam.motion.route import Limits
-from deltacam.motion.run import Run
-from deltacam.motion.schedule import Move, schedule
+from deltacam.motion.run import Run, held_along
+from deltacam.motion.schedule import Drawn, Move, schedule
 from deltacam.units import to_um
 
 if TYPE_CHECKING:
@@ -27,7 +26,6 @@ FIT_ALLOWANCE: Final = 2e-6
 """Part of the tolerance, m, that is kept for tracing the kerf path and for leaving out slivers."""
 
 _HERE: Final = 1e-9
-_SHORTER: Final = 0.9995
 _ROUNDING: Final = 1e-9
 
 
@@ -94,9 +92,8 @@ def plan_motion(
         power = way.power if mode is Mode.CUT else 0.0
         tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
         pace = _pace(robot, way.limits, (*curve.points[0], placement.z))
-        ramps = pace is not None
-        for path in pieces(curve, corner=process.corner, deviation=deviation, ramps=ramps, z=placement.z, pace=pace):
-            tape.run(path, way.limits, way.kind, power=power, cut=cut, where=cut.where)
+        drawn = Drawn(curve, process.corner, deviation, pace, placement.z)
+        tape.run(drawn, curve.ends[-1], way.limits, way.kind, power=power, cut=cut, where=cut.where)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
     return tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
@@ -231,15 +228,22 @@ class _Tape:
     def travel(self, end: Array, limits: Limits, *, where: str) -> None:
         """Go straight to ``end``, (2,) m, with the laser off; nothing where the tool is there."""
         if np.hypot(*(end - self.place)) > _HERE:
-            self.run(straight(self.place, end, self.z), limits, BlockKind.RAPID, where=where)
+            self.run(straight(self.place, end, self.z), end, limits, BlockKind.RAPID, where=where)
 
     def run(
-        self, path: Path, limits: Limits, kind: BlockKind, *, where: str, power: float = 0.0, cut: Cut | None = None
+        self,
+        path: Path | Drawn,
+        end: Array,
+        limits: Limits,
+        kind: BlockKind,
+        *,
+        where: str,
+        power: float = 0.0,
+        cut: Cut | None = None,
     ) -> None:
-        """Run along ``path`` from rest to rest."""
+        """Run along ``path`` to its ``end``, (2,) m, from rest to rest."""
         self._steps.append(_Step(Move(path, limits, where), kind, power, cut))
-        end, _, _, _ = path.evaluate(np.array([len(path.length) - 1]), path.length[-1:])
-        self.place = end[0, :2]
+        self.place = end
 
     def setpoints(self, *, jobs: int | None, what_if: bool | None, progress: Callable[[int, int], None]) -> Setpoints:
         """Everything that was put on the tape, at every tick."""
@@ -274,19 +278,7 @@ def _held(steps: Sequence[_Step], runs: Sequence[Run]) -> tuple[Held, ...]:
     for step, run in zip(steps, runs, strict=True):
         if step.cut is not None:
             by_contour.setdefault(step.cut.contour, []).append(run)
-    return tuple(_held_in(contour, found) for contour, found in by_contour.items())
-
-
-def _held_in(contour: int, runs: Sequence[Run]) -> Held:
-    time = sum(run.duration for run in runs)
-    bound = zip(explain.NAMES, np.sum([run.held for run in runs], axis=0).tolist(), strict=True)
-    without = zip(explain.KINDS, np.sum([run.without for run in runs], axis=0).tolist(), strict=False)
-    return Held(
-        contour,
-        time,
-        {name: value for name, value in bound if value > 0.0},
-        {name: value for name, value in without if value < _SHORTER * time},
-    )
+    return tuple(held_along(contour, found) for contour, found in by_contour.items())
 
 
 def _append(blocks: list[Block], step: _Step, first: int, ticks: int) -> None:
