@@ -163,17 +163,13 @@ def _workers(processes: int) -> Iterator[Callable[..., Iterator[list[Run]]]]:
     # A fork is ready at once, but only safe where no other thread holds a lock.
     forked = "fork" in multiprocessing.get_all_start_methods() and threading.active_count() == 1
     context = multiprocessing.get_context("fork" if forked else "spawn")
-    others = multiprocessing.active_children()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of fork beside the idle threads of the linear algebra
         with ProcessPoolExecutor(processes, mp_context=context, initializer=_start_worker) as pool:
             try:
                 yield pool.map
             except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
-                for worker in multiprocessing.active_children():
-                    if worker not in others:
-                        worker.terminate()  # rather than wait for chunks that nobody wants any more
+                pool.shutdown(cancel_futures=True)  # what is being planned is finished, which takes seconds at most
                 raise
 
 
