@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
 _ROUNDS: Final = 20
-_STRICTER: Final = 0.995
+_STRICTER: Final = 0.985
 _SHORTER: Final = 0.9995
 
 
