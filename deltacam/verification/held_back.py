@@ -12,7 +12,7 @@ HEADS: Final = ("contour", "time, s", "at its limit, share of the time", "time w
 """Of the columns of `table`."""
 
 _LEAST: Final = 0.005  # of the time; less is not worth a word
-_MOST: Final = 4
+_MOST: Final = 3
 
 
 def in_words(held: Sequence[Held]) -> str:
