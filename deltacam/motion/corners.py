@@ -162,12 +162,12 @@ def _room(joints: Joints, length: Array, wanted: BoolArray, deviation: Array) ->
     """
     half = 0.5 * np.abs(joints.angle)
     jump = np.abs(joints.behind - joints.before)
-    # Of a blend of length L that turns by a: the joint is a L (1/2 - (2 RAMP)^2 / 6) / (1 - RAMP) / 4 away; where only
-    # the curvature jumps, by k, the blend leaves the segments by about 0.0062 k (L / 2)^2.
-    share = 0.25 * (0.5 - (2.0 * RAMP) ** 2 / 6.0) / (1.0 - RAMP)
-    reach = np.divide(deviation, 4.0 * share * np.tan(0.5 * half), out=np.full_like(half, np.inf), where=half > 0.0)
+    # A blend of length L that turns by a passes the joint at e = a L (1 / 8 - R / 4 + R^2 / 6) / (1 - R), R being RAMP,
+    # where a is small. Where only the curvature jumps, by k, it leaves the segments by about 0.0062 k (L / 2)^2.
+    share = (0.125 - 0.25 * RAMP + RAMP**2 / 6.0) / (1.0 - RAMP)
+    reach = np.divide(deviation, 8.0 * share * np.tan(0.5 * half), out=np.full_like(half, np.inf), where=half > 0.0)
     by_jump = np.divide(deviation, 0.0062 * jump, out=np.full_like(half, np.inf), where=jump > 0.0)
-    reach = 1.3 * np.minimum(reach, np.sqrt(np.maximum(by_jump, 0.0)))
+    reach = 1.5 * np.minimum(reach, np.sqrt(np.maximum(by_jump, 0.0)))
     bend = np.maximum(np.abs(joints.before), np.abs(joints.behind))
     reach = np.minimum(reach, np.divide(_LARGEST_TURN, bend, out=np.full_like(bend, np.inf), where=bend > 0.0))
     reach = np.minimum(np.where(wanted & (deviation > 0.0), reach, 0.0), np.minimum(length[:-1], length[1:]))

@@ -27,11 +27,12 @@ if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
 _ROUNDS: Final = 2
-_CHECKED: Final = (0.0, 0.09, 0.19, 0.31, 0.43, 0.57, 0.69, 0.81, 0.91, 1.0)
+_CHECKED: Final = np.linspace(0.0, 1.0, 18)
 _INSIDE: Final = 0.9
 _AROUND: Final = 6
 _INSIDE_AGAIN: Final = 0.98
 _ALLOWED: Final = 1.002
+_CHECKED_LIMIT: Final = 0.9995  # of the limits, for what lies between the places that are checked
 _ROUGH_GAP: Final = 1e-1
 _GAP_AGAIN: Final = 1e-2
 _BISECTIONS: Final = 40
@@ -66,11 +67,12 @@ def limited(route: Route, grid: Grid, rows: Rows, robot: Robot, slowness: Array)
     slower = slowness[_interval(grid, base)] ** 2
     all_of_it = _Shares(*np.ones((3, len(base.width))))
     rough = _fastest(route, robot, base, all_of_it, slower, gap=_ROUGH_GAP)
-    base = knots.again(route, rough, ramps, robot)
+    base = knots.again(route, grid, rough, ramps, robot)
     slower = slowness[_interval(grid, base)] ** 2
     tempo = _refined(route, robot, base, slower)
     found = _shares(route, robot, tempo, slower)
-    over = [np.maximum.reduceat(share, base.first[:-1]) ** (1.0 / order) for order, share in enumerate(found, start=1)]
+    shares = (np.maximum.reduceat(share, base.first[:-1]) / _CHECKED_LIMIT for share in found)
+    over = [share ** (1.0 / order) for order, share in enumerate(shares, start=1)]
     return tempo.stretched(np.maximum(1.0, np.maximum.reduce(over)))
 
 
@@ -128,6 +130,8 @@ def _stations(route: Route, robot: Robot, base: Base, lower: _Shares, slower: Ar
     shape = (retime.STATIONS, len(base.width))
     u = np.repeat(np.linspace(0.0, 1.0, shape[0])[:, None], shape[1], axis=1)
     met, place, before = _meetings(route, base)
+    met, chosen = np.unique(met, return_index=True)  # knots are so near that there is hardly ever a second one
+    place, before = place[chosen], before[chosen]
     u[1:3, met] = place
     motion = base.at(np.tile(np.arange(shape[1]), shape[0]), u.ravel())
     segment, inside = route.locate(np.tile(base.move, shape[0]), motion.distance)
@@ -153,14 +157,12 @@ def _stations(route: Route, robot: Robot, base: Base, lower: _Shares, slower: Ar
 
 
 def _meetings(route: Route, base: Base) -> tuple[IntArray, Array, IntArray]:
-    """Where segments of one move meet: the interval, the place u of its first meeting, and the segment before, (M,)."""
+    """Where segments of one move meet: the interval, the place u there, and the segment before, (M,) each."""
     joints = np.cumsum(route.path.length)[:-1]
     inner = np.ones(len(joints), dtype=np.bool_)
     inner[route.first[1:-1] - 1] = False
     before = np.flatnonzero(inner)
     interval = np.searchsorted(base.distance, joints[before], side="right") - 1
-    interval, chosen = np.unique(interval, return_index=True)
-    before = before[chosen]
     low, high = np.zeros(len(before)), np.ones(len(before))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
@@ -170,18 +172,25 @@ def _meetings(route: Route, base: Base) -> tuple[IntArray, Array, IntArray]:
 
 
 def _shares(route: Route, robot: Robot, tempo: Tempo, slower: Array) -> _Shares:
-    """The largest shares of the limits in every interval, between the stations."""
+    """The largest shares of the limits in every interval, between the stations and where segments meet."""
     count = len(tempo.base.width)
-    interval = np.tile(np.arange(count), len(_CHECKED))
-    motion = tempo.motion(interval, np.repeat(_CHECKED, count))
-    along = Along.of(route, robot, motion, tempo.base.move[interval])
+    met, place, before = _meetings(route, tempo.base)
+    interval = np.concatenate([np.tile(np.arange(count), len(_CHECKED)), met, met])
+    motion = tempo.motion(interval, np.concatenate([np.repeat(_CHECKED, count), place, place]))
+    segment, inside = route.locate(tempo.base.move[interval], motion.distance)
+    ends = len(segment) - 2 * len(met)
+    segment[ends:] = np.concatenate([before, before + 1])
+    inside[ends:] = np.concatenate([route.path.length[before], np.zeros(len(met))])
+    along = Along.at(route, robot, motion, segment, inside)
     slower = slower[interval]
     speed = motion.speed / np.sqrt(slower * along.bound)
     joints = np.abs(along.joints[1]) / np.asarray(robot.joints.max_acceleration)
     tool = np.hypot(motion.acceleration, along.across) / along.cap
     jerk = np.abs(along.joints[2]) / np.asarray(robot.joints.max_jerk)
-    parts = (speed, np.maximum(joints.max(axis=1), tool) / slower, jerk.max(axis=1))
-    return _Shares(*(part.reshape(-1, count).max(axis=0) for part in parts))
+    found = np.zeros((3, count))
+    for row, part in zip(found, (speed, np.maximum(joints.max(axis=1), tool) / slower, jerk.max(axis=1)), strict=True):
+        np.maximum.at(row, interval, part)
+    return _Shares(*found)
 
 
 def _spread(values: Array) -> Array:

@@ -27,7 +27,8 @@ _PER_CLOTHOID: Final = 2.5
 _WINDOW: Final = 5.0  # in distances of knots
 _BUSY: Final = 0.3  # of the limit of jerk
 _JUMP: Final = 0.2  # of the limit of acceleration
-_FEWEST: Final = 8
+_FEWEST: Final = 16
+_BETWEEN: Final = np.arange(4) / 4.0  # of every interval
 
 
 def ramps(law: TimeLaw, rows: Rows, robot: Robot) -> Array:
@@ -53,8 +54,8 @@ def averaged(route: Route, grid: Grid, law: TimeLaw, steady: Array, ramps: Array
     move = np.repeat(np.arange(len(ramps)), np.diff(law.rest))
     samples = _Samples(move, law.time[:-1] - begin[move], grid.segment, np.sqrt(law.squared[:-1]), busy)
     spacing = samples.spacing(route, ramps / _PER_ROUGH_RAMP)
-    margin = 0.5 * _WINDOW * spacing[law.rest[:-1]]
-    first, width = _knots(samples, spacing, durations, margin)
+    margin, behind = (0.5 * _WINDOW * spacing[ends] for ends in (law.rest[:-1], law.rest[1:] - 1))
+    first, width = _knots(samples, spacing, durations, margin, behind)
 
     def speed(move: IntArray, place: Array) -> Array:
         at = place - margin[move]
@@ -67,16 +68,30 @@ def averaged(route: Route, grid: Grid, law: TimeLaw, steady: Array, ramps: Array
     return Base.through(first, width, speed, distance[:-1], np.diff(distance))
 
 
-def again(route: Route, tempo: Tempo, ramps: Array, robot: Robot) -> Base:
+def again(route: Route, grid: Grid, tempo: Tempo, ramps: Array, robot: Robot) -> Base:
     """The motion of a tempo as a base with knots where it needs them."""
-    base = tempo.base
-    motion = tempo.motion(np.arange(len(base.width)), np.zeros(len(base.width)))
-    along = Along.of(route, robot, motion, base.move)
-    busy = (np.abs(along.joints[2]) / np.asarray(robot.joints.max_jerk)).max(axis=1) > _BUSY
-    segment, _ = route.locate(base.move, motion.distance)
-    time = tempo.time[:-1] - tempo.time[base.first[base.move]]
-    samples = _Samples(base.move, time, segment, motion.speed, busy)
-    first, width = _knots(samples, samples.spacing(route, ramps / _PER_RAMP), tempo.durations, np.zeros(len(ramps)))
+    base, places = tempo.base, np.repeat(_BETWEEN, len(tempo.base.width))
+    interval = np.tile(np.arange(len(base.width)), len(_BETWEEN))
+    motion = tempo.motion(interval, places)
+    along = Along.of(route, robot, motion, base.move[interval])
+    jerk = (np.abs(along.joints[2]) / np.asarray(robot.joints.max_jerk)).max(axis=1)
+    # When each gridpoint is passed, how fast, and with how much jerk; tempo.at undoes it at the ends of the intervals.
+    order = np.lexsort((places, interval))
+    passed, speed, jerk = motion.distance[order], motion.speed[order], jerk[order]
+    time = tempo.time_at(interval, places)[order]
+    move = np.repeat(np.arange(len(ramps)), np.diff(grid.rest))
+    at = grid.distance[:-1]
+    since = np.interp(at, passed, time) - tempo.time[base.first[move]]
+    samples = _Samples(
+        move,
+        np.clip(since, 0.0, tempo.durations[move]),
+        grid.segment,
+        np.interp(at, passed, speed),
+        np.interp(at, passed, jerk) > _BUSY,
+    )
+    first, width = _knots(
+        samples, samples.spacing(route, ramps / _PER_RAMP), tempo.durations, *np.zeros((2, len(ramps)))
+    )
     start = base.distance[base.first[:-1]]
     length = np.diff(np.append(start, route.path.total))
     return Base.through(first, width, lambda move, at: tempo.motion(*tempo.locate(move, at)).speed, start, length)
@@ -119,17 +134,17 @@ class _Samples(NamedTuple):
         return np.asarray(np.minimum(after, before))
 
 
-def _knots(samples: _Samples, spacing: Array, durations: Array, margin: Array) -> tuple[IntArray, Array]:
+def _knots(samples: _Samples, spacing: Array, durations: Array, margin: Array, behind: Array) -> tuple[IntArray, Array]:
     """The first interval of every move, and the widths of the intervals, s.
 
-    The intervals cover the durations (K,) s and a ``margin`` (K,) s before and after.
+    The intervals cover the durations (K,) s and (K,) s as a ``margin`` before and others ``behind`` them.
     """
     firsts = np.flatnonzero(np.diff(samples.move, prepend=-1))
     ends = np.append(firsts[1:], len(samples.move))
     widths = []
     for move, (first, end) in enumerate(zip(firsts.tolist(), ends.tolist(), strict=True)):
         time = np.concatenate(
-            [[-margin[move]], samples.time[first:end], [durations[move], durations[move] + margin[move]]]
+            [[-margin[move]], samples.time[first:end], [durations[move], durations[move] + behind[move]]]
         )
         apart = np.concatenate([[spacing[first]], spacing[first:end], [spacing[end - 1]] * 2])
         passed = np.concatenate([[0.0], np.cumsum(np.diff(time) * 0.5 * (1.0 / apart[1:] + 1.0 / apart[:-1]))])

@@ -31,6 +31,7 @@ _QUADRATURE: Final = ((0.0, 1.0 / 6.0), (0.5, 4.0 / 6.0), (1.0, 1.0 / 6.0))  # p
 _MOST_STEPS: Final = 60
 _TO_BOUNDARY: Final = 0.99
 _LEFT: Final = 0.005
+_LOWEST: Final = 1e-3  # of X at the ends of an interval
 _BELOW: Final = 0.3
 _HALVINGS: Final = 30
 
@@ -212,11 +213,11 @@ def _state(base: Base, rows: Rows, simpson: Array, weights: Array) -> _State:
         room = np.tile(1.0 / np.sqrt(X), (3, 1))
         time = base.width * (np.array([weight for _, weight in _QUADRATURE]) @ at_quadrature**-0.5)
     slack = (1.0 - X / rows.highest, 1.0 - joints, 1.0 + joints, 1.0 - along**2 - across**2, room - jerk, room + jerk)
-    # X is positive everywhere if it is at the ends and at its turning point.
+    # X must not come near 0 anywhere, at its turning point neither: the time is not known well there.
     start, middle, end = at_quadrature
     bend, slope = 2.0 * (start - 2.0 * middle + end), 4.0 * middle - 3.0 * start - end
     turn = np.clip(np.divide(-0.5 * slope, bend, out=np.zeros_like(bend), where=bend > 0.0), 0.0, 1.0)
-    positive = start + turn * (slope + turn * bend) > 0.0
+    positive = start + turn * (slope + turn * bend) > _LOWEST * np.maximum(start, end)
     return _State(X, np.stack([along, across]), np.concatenate(slack), np.where(positive, time, np.nan))
 
 

@@ -159,6 +159,11 @@ class Tempo:
             u = np.clip(u - late * np.sqrt(squared_rate(part, u)[0]), 0.0, 1.0)
         return interval, u
 
+    def time_at(self, interval: IntArray, u: Array) -> Array:
+        """The time at places ``u`` (N,) of the given intervals (N,), (N,) s; see ``time``."""
+        part = spline_parts(self.base, self.weights)[:, interval]
+        return np.asarray(self.time[interval] + self.base.width[interval] * u * _slowness(part, u))
+
     def motion(self, interval: IntArray, u: Array) -> Motion:
         """The motion in time at places ``u`` (N,) of the given intervals (N,)."""
         distance, speed, acceleration, jerk = self.base.at(interval, u)
