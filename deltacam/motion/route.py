@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SPACING: Final = 4e-4
 """Longest interval between gridpoints, m."""
 
-STEP: Final = 0.03
+STEP: Final = 0.045
 """Largest turn of an arc between gridpoints, rad: the best speed on an arc changes with the angle."""
 
 FINEST: Final = 0.1
@@ -26,8 +26,8 @@ FINEST: Final = 0.1
 GROWTH: Final = 0.4
 """How much wider intervals are per distance from the end of their segment, up to ``SPACING``."""
 
-LINE: Final = 20.0
-"""Fewest of the longest intervals that a line could hold: the speed turns from rising to falling within one of them."""
+LONGEST: Final = 20.0
+"""How many of its longest intervals a line or arc could hold: the speed turns from rising to falling within one."""
 
 INTERVALS: Final = 6
 """Fewest intervals per line or arc."""
@@ -135,7 +135,7 @@ class Grid:
         """
         path = route.path
         widest = np.minimum(SPACING, STEP / np.maximum(path.sharpest, 1e-9))
-        widest = np.where(path.sharpest == 0.0, np.minimum(widest, path.length / LINE), widest)
+        widest = np.where(path.sharpness == 0.0, np.minimum(widest, path.length / LONGEST), widest)
         finest = np.minimum(widest, FINEST * _braking(route, robot))
         half = 0.5 * path.length
         graded = (widest - finest) / GROWTH

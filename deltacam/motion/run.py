@@ -20,8 +20,9 @@ from deltacam.motion.tempo import Tempo
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
-_ROUNDS: Final = 20
+_ROUNDS: Final = 10
 _STRICTER: Final = 0.985
+_SLOWEST: Final = 0.2  # in one round
 _SHORTER: Final = 0.9995
 
 
@@ -85,7 +86,9 @@ def _slower(route: Route, grid: Grid, law: Law, robot: Robot, setpoints: tuple[A
         return factor
     ends = grid.rest[1:] - 1
     last, _, _, _ = route.path.evaluate(grid.segment[ends], grid.end[ends])
-    off, place = chord_deviation(route.path, law, robot, setpoints, robot.inverse(last))
+    works = np.isfinite(route.chord[route.first[:-1]])
+    follows = np.append(False, works[1:] & works[:-1])
+    off, place = chord_deviation(route.path, law, robot, setpoints, robot.inverse(last), follows)
     interval = np.clip(np.searchsorted(grid.distance, place, side="right") - 1, 0, len(factor) - 1)
     allowed = route.chord[grid.segment[interval]]
     over = np.flatnonzero(off > allowed)
@@ -93,7 +96,7 @@ def _slower(route: Route, grid: Grid, law: Law, robot: Robot, setpoints: tuple[A
     before = np.searchsorted(grid.distance, place[np.maximum(over - 1, 0)], side="right") - 1
     after = np.searchsorted(grid.distance, place[np.minimum(over + 1, len(place) - 1)], side="left")
     for tick, first, end in zip(over.tolist(), before.tolist(), after.tolist(), strict=True):
-        needed = np.sqrt(allowed[tick] / off[tick]) * _STRICTER
+        needed = max(np.sqrt(allowed[tick] / off[tick]) * _STRICTER, _SLOWEST)
         factor[first:end] = np.minimum(factor[first:end], needed)
     return factor
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from deltacam.model import Array, IntArray
+from deltacam.model import Array, BoolArray, IntArray
 from deltacam.motion.law import Law
 from deltacam.motion.path import Path
 
@@ -35,12 +36,9 @@ def sample(path: Path, law: Law, robot: Robot) -> tuple[Array, ...]:
 
 
 def chord_deviation(
-    path: Path, law: Law, robot: Robot, setpoints: tuple[Array, ...], ends: Array
+    path: Path, law: Law, robot: Robot, setpoints: tuple[Array, ...], ends: Array, follows: BoolArray | None = None
 ) -> tuple[Array, Array]:
     """How far the controller leaves the path half-way between ticks.
-
-    Where one move ends and the next begins the controller may or may not rest for some ticks, which under cubic
-    interpolation makes a difference; the larger of both counts.
 
     Args:
         path: of the moves.
@@ -48,6 +46,8 @@ def chord_deviation(
         robot: gives the interpolation.
         setpoints: of every move, as `sample` returns them.
         ends: (K, 3) rad, the setpoint at which each move ends.
+        follows: (K,) whether a move begins without a rest after the one before; under cubic interpolation that matters;
+            by default all do.
 
     Returns:
         the distance from the path, m, and the place on it, m from its start, for every tick of every move, (N,) each.
@@ -56,24 +56,17 @@ def chord_deviation(
     move = np.repeat(np.arange(len(counts)), counts)
     tick = np.arange(len(move)) - np.repeat(np.cumsum(counts) - counts, counts)
     place = _places(path, law, move, (tick + 0.5) / counts[move])
-    rests = [halfway(np.vstack([q, end]), robot) for q, end in zip(setpoints, ends, strict=True)]
-    off = _off(path, robot, np.concatenate(rests), place)
-    if robot.controller.interpolation != "linear":
-        goes_on = halfway(np.concatenate([*setpoints, ends[-1:]]), robot)
-        off = np.maximum(off, _off(path, robot, goes_on, place))
-    return off, place[2]
-
-
-def _off(path: Path, robot: Robot, q: Array, place: tuple[Array, Array, Array]) -> Array:
-    """How far the tool is from the path at joint angles q (N, 3) rad, near places on it, (N,) m."""
+    starts = np.flatnonzero(~follows) if follows is not None else np.zeros(0, dtype=np.int64)
+    groups = itertools.pairwise(np.unique([0, *starts.tolist(), len(counts)]).tolist())
+    q = [halfway(np.concatenate([*setpoints[a:b], ends[b - 1 : b]]), robot) for a, b in groups]
     position, tangent, distance = place
-    tool = robot.forward(q)
+    tool = robot.forward(np.concatenate(q))
     # The point of the path beside the tool, and the part across the path of the way there.
     along = np.sum((tool - position) * tangent, axis=1)
     position, tangent, _, _ = path.evaluate(*path.locate(np.clip(distance + along, 0.0, path.total)))
     off = tool - position
     off -= np.sum(off * tangent, axis=1, keepdims=True) * tangent
-    return np.asarray(np.linalg.norm(off, axis=1))
+    return np.asarray(np.linalg.norm(off, axis=1)), distance
 
 
 def halfway(q: Array, robot: Robot) -> Array:

@@ -83,6 +83,8 @@ def plan_motion(
     deviation = _left_for_corners(process.tolerance, drawing_error)
     rapid = rapid_limits(robot)
     ways = {operation: _way(operation, robot, process) for operation in {cut.operation for cut in cuts}}
+    # Under cubic interpolation the move after a setpoint bends the one before it: a rest keeps rapids out of cuts.
+    apart = 0 if robot.controller.interpolation == "linear" else 1
     tape = _Tape(robot, np.array(robot.workspace.park), placement.z)
     tape.rest(BlockKind.RAPID, ticks=1)
     for cut in cuts:
@@ -91,9 +93,11 @@ def plan_motion(
         way = ways[cut.operation]
         power = way.power if mode is Mode.CUT else 0.0
         tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
+        tape.rest(BlockKind.RAPID, ticks=0 if way.pierce else apart)
         pace = _pace(robot, way.limits, (*curve.points[0], placement.z))
         drawn = Drawn(curve, process.corner, deviation, pace, placement.z)
         tape.run(drawn, curve.ends[-1], way.limits, way.kind, power=power, cut=cut, where=cut.where)
+        tape.rest(BlockKind.RAPID, ticks=apart)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
     return tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
