@@ -9,7 +9,7 @@ from typing import Final
 from deltacam.model import Held
 
 HEADS: Final = ("contour", "time, s", "at its limit, share of the time", "time without it, s")
-"""Of the columns of `table`."""
+"""Of the columns of `rows`."""
 
 _LEAST: Final = 0.005  # of the time; less is not worth a word
 _MOST: Final = 3
@@ -26,7 +26,7 @@ def in_words(held: Sequence[Held]) -> str:
     return f"{words}; without {', '.join(faster[:_MOST])}" if faster else words
 
 
-def table(held: Sequence[Held]) -> list[list[str]]:
+def rows(held: Sequence[Held]) -> list[list[str]]:
     """A row per contour: its number, its time, what binds for how much of it, and its time without each limit."""
     return [
         [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -14,10 +14,10 @@ from deltacam.units import to_mm
 from deltacam.verification import held_back
 from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.picture import draw, shown, tool_speeds
+from deltacam.verification.tables import table
 
 _POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 _COLUMNS: Final = 1000  # of a chart: more setpoints are shown by their smallest and largest values
-_LONG_TABLE: Final = 25  # rows: a longer one of those that few people read is folded
 _DONE: Final = {Operation.CUT: "cut", Operation.ENGRAVE: "engraved"}
 _HANDLES: Final = 3  # of a contour that are named
 _LEFT, _RIGHT = 62.0, 880.0  # of a chart, pixels
@@ -79,10 +79,10 @@ def to_html(report: Report, program: Program, *, drawing: Drawing | None, title:
         _section("Motion", _charts(evidence)),
         _section("Checks", _checks(report.checks, evidence.rate)),
         _section("Findings", _findings(report)),
-        _section("What limits the speed", _table(held_back.HEADS, held_back.table(report.held)) if report.held else ""),
+        _section("What limits the speed", table(held_back.HEADS, held_back.rows(report.held)) if report.held else ""),
         _section("Contours", _contours(evidence, drawing)),
         _section("Entities of the drawing", _ledger(report.ledger)),
-        _section("All figures", _table(("figure", "value"), _figures(report.summary))),
+        _section("All figures", table(("figure", "value"), _figures(report.summary))),
     )
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -132,26 +132,6 @@ def _tiles(summary: Mapping[str, Any], program: Program) -> str:
     return f"<dl>{''.join(cells)}</dl>\n"
 
 
-def _table(
-    heads: Sequence[str], rows: Sequence[Sequence[str]], *, numbers: Iterable[int] = (), fold: bool = True
-) -> str:
-    """A table of cells that are HTML already, the first of each row its heading.
-
-    ``numbers`` are the columns that are set to the right; ``fold`` is whether a long table has to be opened.
-    """
-    style = [' class="n"' if column in set(numbers) else "" for column in range(len(heads))]
-    head = "".join(f'<th scope="col"{of}>{name}</th>' for name, of in zip(heads, style, strict=True))
-    lines = []
-    for first, *others in rows:
-        cells = "".join(f"<td{of}>{cell}</td>" for cell, of in zip(others, style[1:], strict=True))
-        lines.append(f'<tr><th scope="row"{style[0]}>{first}</th>{cells}</tr>\n')
-    body = f"<thead><tr>{head}</tr></thead>\n<tbody>\n{''.join(lines)}</tbody>"
-    table = f'<div class="table" tabindex="0"><table>{body}</table></div>'
-    if fold and len(rows) > _LONG_TABLE:
-        return f"<details><summary>{len(rows)} rows</summary>{table}</details>"
-    return table
-
-
 def _checks(checks: Sequence[Check], rate: float) -> str:
     """The failed checks first, otherwise in their order."""
     rows = []
@@ -162,12 +142,12 @@ def _checks(checks: Sequence[Check], rate: float) -> str:
         numbers = (_number(check.worst), limit, shown(check.unit), time)
         rows.append((shown(check.name), verdict, *numbers, shown(check.where)))
     heads = ("check", "verdict", "worst", "limit", "unit", "time, s", "where")
-    return _table(heads, rows, numbers=(2, 3, 5), fold=False)
+    return table(heads, rows, numbers=(2, 3, 5), fold=False)
 
 
 def _findings(report: Report) -> str:
     rows = [(shown(finding.what), shown(finding.where), shown(finding.hint)) for finding in report.findings]
-    return _table(("finding", "where", "hint"), rows, fold=False) if rows else ""
+    return table(("finding", "where", "hint"), rows, fold=False) if rows else ""
 
 
 def _contours(evidence: Evidence, drawing: Drawing | None) -> str:
@@ -191,7 +171,7 @@ def _contours(evidence: Evidence, drawing: Drawing | None) -> str:
             cells += ["unknown" if len(ticks) else "", "", "", ""]
         rows.append(cells)
     heads = ("contour", "layer", "handles", "done", "length, mm", "time, s", "mean, mm/s", "largest, mm/s")
-    return _table(heads, rows, numbers=(4, 5, 6, 7)) if rows else ""
+    return table(heads, rows, numbers=(4, 5, 6, 7)) if rows else ""
 
 
 def _handles(handles: Sequence[str]) -> str:
@@ -207,7 +187,7 @@ def _ledger(ledger: Sequence[LedgerEntry]) -> str:
         contour = "" if entry.contour is None else str(entry.contour)
         rows.append([*map(shown, texts), contour, shown(entry.reason)])
     heads = ("handle", "entity", "layer", "block", "outcome", "contour", "reason")
-    return _table(heads, rows, numbers=(5,)) if rows else ""
+    return table(heads, rows, numbers=(5,)) if rows else ""
 
 
 def _figures(summary: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:

@@ -272,6 +272,25 @@ def test_path_derivatives_are_the_differences_of_inverse_along_a_path(robot: Rob
     assert np.abs(np.tensordot(second, near, 1) / h**2 - ddq).max() < 1e-7 * np.abs(ddq).max()
 
 
+@pytest.mark.parametrize("robot", ROBOTS.values(), ids=lambda robot: robot.name)
+def test_the_third_derivative_is_the_difference_of_the_second_along_a_path(robot: Robot) -> None:
+    size = 0.14 if robot.workspace.radius is None else 0.6 * robot.workspace.radius
+    scale, rate, phase = np.array([size, size, 0.05]), np.array([2.0, 3.0, 1.0]), np.array([0.3, 1.1, 0.0])
+
+    def derivatives(s: Array) -> list[Array]:
+        angle, middle = np.outer(s, rate) + phase, np.array([0.0, 0.0, robot.workspace.sheet_z])
+        first, second = scale * rate * np.cos(angle), -scale * rate**2 * np.sin(angle)
+        return [scale * np.sin(angle) + middle, first, second, -scale * rate**3 * np.cos(angle)]
+
+    s, h = np.linspace(0.0, 6.0, 500), 1e-3
+    near = [robot.path_derivatives(*derivatives(s + k * h)[:3])[2] for k in range(-3, 4)]
+    wanted = np.tensordot(np.array([-1, 9, -45, 0, 45, -9, 1]) / 60.0, near, 1) / h
+    found = robot.third_derivative(*derivatives(s))
+    assert np.abs(found - wanted).max() < 1e-8 * np.abs(found).max()
+    with pytest.raises(ValueError, match="500 points, 1 third derivatives"):
+        robot.third_derivative(*derivatives(s)[:3], np.zeros((1, 3)))
+
+
 def test_path_derivatives_of_different_lengths_are_refused() -> None:
     one, two = np.array([[0.0, 0.0, -0.65]]), np.zeros((2, 3))
     with pytest.raises(ValueError, match="1 points, 2 first and 2 second derivatives"):

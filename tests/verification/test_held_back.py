@@ -1,7 +1,7 @@
 """What holds a program back, in words."""
 
 from deltacam.model import Held
-from deltacam.verification.held_back import HEADS, in_words, table
+from deltacam.verification.held_back import HEADS, in_words, rows
 
 HELD = (
     Held(7, 2.0, {"feed": 1.5, "joint 1 jerk": 0.2, "none": 0.3}, {"feed": 1.0}),
@@ -21,6 +21,6 @@ def test_without_times_nothing_is_said_of_them() -> None:
 
 
 def test_the_table_has_a_row_per_contour() -> None:
-    rows = table(HELD)
-    assert [len(row) for row in rows] == [len(HEADS)] * 2
-    assert rows[1] == ["9", "2.000", "joint 2 jerk 50 %, corners 50 %", "joint jerk 1.500, feed 1.900"]
+    found = rows(HELD)
+    assert [len(row) for row in found] == [len(HEADS)] * 2
+    assert found[1] == ["9", "2.000", "joint 2 jerk 50 %, corners 50 %", "joint jerk 1.500, feed 1.900"]
