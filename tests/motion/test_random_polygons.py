@@ -7,11 +7,13 @@ import pytest
 
 from deltacam.geometry import curve as curves
 from deltacam.model import Corner, Curve
-from deltacam.motion.corners import pieces
+from deltacam.motion.corners import Pace, pieces
+from deltacam.motion.jerk import limited
 from deltacam.motion.parametrize import parametrize
-from deltacam.motion.route import Limits, Route
+from deltacam.motion.route import Grid, Limits, Route
+from deltacam.motion.rows import Rows
 from deltacam.robot.reader import load_robot
-from tests.motion.shares import at_ticks, of_law
+from tests.motion.shares import at_ticks, of_law, of_tempo
 
 JOINTS = replace(load_robot("delta-300").joints, max_jerk=None)
 STRONG = replace(load_robot("delta-300"), joints=JOINTS)
@@ -50,3 +52,22 @@ def test_no_corner_is_passed_faster_than_the_limits_allow(batch: int, corner: Co
     law = parametrize(route, robot)
     assert max(of_law(route, law, robot, (0.0, 0.25, 0.75, 1.0))) <= 1.001
     assert max(at_ticks(route, law, robot)) <= 1.001
+
+
+@pytest.mark.parametrize("jerk", [6388.0])
+@pytest.mark.parametrize("corner", ["round", "stop"])
+def test_no_corner_is_passed_with_more_jerk_than_the_limit(corner: Corner, jerk: float) -> None:
+    robot = replace(STRONG, joints=replace(JOINTS, max_jerk=(jerk,) * 3))
+    pace = Pace(0.3, CAP, jerk / 3.0, 1.0 / robot.controller.rate_hz)
+    rng = np.random.default_rng(7)
+    moves = []
+    for _ in range(40):
+        parts = pieces(
+            random_polygon(rng), corner=corner, deviation=18e-6, ramps=True, z=robot.workspace.sheet_z, pace=pace
+        )
+        moves += [(part, Limits(pace.feed, CAP)) for part in parts]
+    route = Route.of(moves)
+    grid = Grid.over(route, robot)
+    tempo = limited(route, grid, Rows.over(route, grid, robot), robot, np.ones(len(grid.segment)))
+    assert max(of_tempo(route, tempo, robot, np.linspace(0.0, 1.0, 11))) <= 1.001
+    assert max(at_ticks(route, tempo, robot)) <= 1.001
