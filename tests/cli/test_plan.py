@@ -97,7 +97,7 @@ def test_the_folder_for_settings_is_looked_at_after_the_current_one(
 def robot_file(folder: Path, jerk: str) -> str:
     """A robot file with that line for the limit of jerk."""
     text = (DXF.parents[2] / "samples" / "robot.toml").read_text()
-    changed = re.sub(r"^# max_jerk_deg_s3 = .*$", jerk, text, flags=re.MULTILINE)
+    changed = re.sub(r"^max_jerk_deg_s3 = .*$", jerk, text, flags=re.MULTILINE)
     assert changed != text
     (folder / "robot.toml").write_text(changed)
     return "robot.toml"
