@@ -70,7 +70,10 @@ def pieces(
         paths whose segments are tangent, each to be run from rest to rest, together the whole cut.
     """
     largest = SHARPEST_PASSED if corner == "stop" else SHARPEST_IN_CHAIN
-    curve, off = fit(_without_slivers(cut), allowance=CHAINS * deviation, largest_corner=largest)
+    whole = _without_slivers(cut)
+    if whole is not cut:
+        deviation = max(deviation - _SHORTEST_SEGMENT, 0.0)
+    curve, off = fit(whole, allowance=CHAINS * deviation, largest_corner=largest)
     angle = curves.corner_angles(curve)[1 if curve.closed else 0 :]
     curvature = curves.curvatures(curve)
     turns = np.abs(angle) > _TANGENT

@@ -34,6 +34,7 @@ _INSIDE_AGAIN: Final = 0.98
 _ALLOWED: Final = 1.002
 _CHECKED_LIMIT: Final = 0.9995  # of the limits, for what lies between the places that are checked
 _ROUGH_GAP: Final = 1e-1
+_ROUGH_ROUNDS: Final = 2  # the second is for the ends of short moves, which the first base does not show well
 _GAP_AGAIN: Final = 1e-2
 _BISECTIONS: Final = 40
 
@@ -64,10 +65,11 @@ def limited(route: Route, grid: Grid, rows: Rows, robot: Robot, slowness: Array)
     law = solve(grid, replace(rows, bound=np.minimum(rows.bound, steady)), slowness)
     ramps = knots.ramps(law, rows, robot)
     base = knots.averaged(route, grid, law, steady[0], ramps)
-    slower = slowness[_interval(grid, base)] ** 2
-    all_of_it = _Shares(*np.ones((3, len(base.width))))
-    rough = _fastest(route, robot, base, all_of_it, slower, gap=_ROUGH_GAP)
-    base = knots.again(route, grid, rough, ramps, robot)
+    for _ in range(_ROUGH_ROUNDS):
+        all_of_it = _Shares(*np.ones((3, len(base.width))))
+        slower = slowness[_interval(grid, base)] ** 2
+        rough = _fastest(route, robot, base, all_of_it, slower, gap=_ROUGH_GAP)
+        base = knots.again(route, grid, rough, ramps, robot)
     slower = slowness[_interval(grid, base)] ** 2
     tempo = _refined(route, robot, base, slower)
     found = _shares(route, robot, tempo, slower)

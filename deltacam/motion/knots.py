@@ -32,10 +32,15 @@ _BETWEEN: Final = np.arange(4) / 4.0  # of every interval
 
 
 def ramps(law: TimeLaw, rows: Rows, robot: Robot) -> Array:
-    """How long every move takes to build up its largest acceleration, (K,) s."""
+    """How long every move takes to build up its largest acceleration, (K,) s.
+
+    A short move never has the acceleration of the law: under a jerk j alone, a way L takes four times (L / 2j)^(1/3).
+    """
     acceleration = np.abs(rows.joint_a[1] * law.acceleration[:, None] + rows.joint_b[1] * law.squared[:-1, None])
     taken = acceleration * np.asarray(robot.joints.max_acceleration) / np.asarray(robot.joints.max_jerk)
-    return np.maximum.reduceat(taken.max(axis=1), law.rest[:-1])
+    whole = np.maximum.reduceat(taken.max(axis=1), law.rest[:-1])
+    largest = np.maximum.reduceat(np.abs(law.acceleration), law.rest[:-1])
+    return np.asarray(np.minimum(whole, np.cbrt(0.5 * np.diff(law.distance[law.rest]) * whole / largest)))
 
 
 def averaged(route: Route, grid: Grid, law: TimeLaw, steady: Array, ramps: Array) -> Base:

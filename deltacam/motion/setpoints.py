@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
 FIT_ALLOWANCE: Final = 2e-6
-"""Part of the tolerance, m, that is kept for tracing the kerf path and for leaving out slivers."""
+"""Part of the tolerance, m, that is kept for tracing the kerf path; nothing is where there is no kerf."""
 
 _HERE: Final = 1e-9
 _ROUNDING: Final = 1e-9
@@ -80,7 +80,7 @@ def plan_motion(
         ProcessError: something is to be engraved, and the process does not say how.
         RobotError: a move leaves the reach.
     """
-    deviation = _left_for_corners(process.tolerance, drawing_error)
+    deviation = _left_for_corners(process.tolerance, drawing_error + (FIT_ALLOWANCE if process.kerf > 0.0 else 0.0))
     rapid = rapid_limits(robot)
     ways = {operation: _way(operation, robot, process) for operation in {cut.operation for cut in cuts}}
     # Under cubic interpolation the move after a setpoint bends the one before it: a rest keeps rapids out of cuts.
@@ -185,14 +185,14 @@ def _way(operation: Operation, robot: Robot, process: Process) -> _Way:
     return _Way(BlockKind.CUT, working_limits(robot, process, process.feed), process.power, pierce)
 
 
-def _left_for_corners(tolerance: float, drawing_error: float) -> float:
-    """What reading and tracing leave of the tolerance, m."""
-    left = tolerance - drawing_error - FIT_ALLOWANCE
+def _left_for_corners(tolerance: float, error: float) -> float:
+    """What the ``error`` of reading and tracing leaves of the tolerance, m."""
+    left = tolerance - error
     if left < -_ROUNDING:
-        least = to_um(drawing_error + FIT_ALLOWANCE)
+        least = to_um(error)
         raise InfeasibleError(
             f"a tolerance of {to_um(tolerance):.3g} um is too small for this drawing, whose curves are only known to "
-            f"within {to_um(drawing_error):.2g} um",
+            f"within {to_um(error):.2g} um",
             hint=f"use at least --tolerance {math.ceil(least * 10.0) / 10.0:g}um; errors of reading come from splines, "
             "from ellipses and from ends that do not quite meet",
         )

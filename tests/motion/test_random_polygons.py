@@ -54,7 +54,7 @@ def test_no_corner_is_passed_faster_than_the_limits_allow(batch: int, corner: Co
     assert max(at_ticks(route, law, robot)) <= 1.001
 
 
-@pytest.mark.parametrize("jerk", [6388.0])
+@pytest.mark.parametrize("jerk", [6388.0, 1500.0])
 @pytest.mark.parametrize("corner", ["round", "stop"])
 def test_no_corner_is_passed_with_more_jerk_than_the_limit(corner: Corner, jerk: float) -> None:
     robot = replace(STRONG, joints=replace(JOINTS, max_jerk=(jerk,) * 3))
