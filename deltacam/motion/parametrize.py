@@ -177,28 +177,41 @@ def _by_compiled_solver(program: _Program, wrapper: Any) -> Array:
     def steps(part: int) -> Any:
         return wrapper(*_for_toppra(program.part(part))).solve_stagewise_optim
 
-    highest = [0.0] * (count + 1)
-    for point in range(count - 1, -1, -1):
-        part, inside = divmod(point, _SLICE)
-        # x = 0 is always drivable: the lower end of the controllable set needs no program.
-        highest[point] = steps(part)(inside, None, _BACKWARDS, nan, nan, 0.0, highest[point + 1])[1]
-        if highest[point] != highest[point]:
-            raise program.undrivable(point)
+    starts = range(0, count, _SLICE)
+    highest, after = [0.0] * (count + 1), 0.0
+    for start in reversed(starts):
+        step = steps(start // _SLICE)
+        for inside in range(min(_SLICE, count - start) - 1, -1, -1):
+            # x = 0 is always drivable: the lower end of the controllable set needs no program.
+            after = step(inside, None, _BACKWARDS, nan, nan, 0.0, after)[1]
+            if after != after:
+                raise program.undrivable(start + inside)
+            highest[start + inside] = after
     x, squared = 0.0, [0.0] * (count + 1)
-    for point in range(count):
-        part, inside = divmod(point, _SLICE)
-        step, after = steps(part), highest[point + 1]
-        change = step(inside, None, _FORWARDS, x, x, 0.0, after)[0]
-        for back in _STEPS_BACK:
-            if change == change:
-                break
-            # At the very edge of the controllable set rounding may leave no solution; a little below there is one.
-            squared[point] = x = x * (1.0 - back)
-            change = step(inside, None, _FORWARDS, x, x, 0.0, after)[0]
-        else:
-            raise program.undrivable(point)
-        squared[point + 1] = x = min(max(x + change, 0.0), after)
+    for start in starts:
+        step = steps(start // _SLICE)
+        for point in range(start, min(start + _SLICE, count)):
+            after = highest[point + 1]
+            change = step(point - start, None, _FORWARDS, x, x, 0.0, after)[0]
+            if change != change:
+                x, change = _step_back(step, point - start, x, after)
+                if change != change:
+                    raise program.undrivable(point)
+                squared[point] = x
+            x += change
+            squared[point + 1] = x = 0.0 if x < 0.0 else after if x > after else x
     return np.array(squared)
+
+
+def _step_back(step: Any, inside: int, x: float, after: float) -> tuple[float, float]:
+    """An x a little below, and its change: at the very edge of the controllable set rounding may leave no solution."""
+    change = float("nan")
+    for back in _STEPS_BACK:
+        x *= 1.0 - back
+        change = step(inside, None, _FORWARDS, x, x, 0.0, after)[0]
+        if change == change:
+            break
+    return x, change
 
 
 def _by_public_interface(program: _Program) -> Array:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SPACING: Final = 4e-4
 """Longest interval between gridpoints, m."""
 
-STEP: Final = 0.045
+STEP: Final = 0.038
 """Largest turn of an arc between gridpoints, rad: the best speed on an arc changes with the angle."""
 
 FINEST: Final = 0.1

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 STATIONS: Final = (0.0, 0.5, 1.0)
 """Where in each interval the limits are held; with both ends alone they were exceeded by 0.36 % in between."""
 
-SIDES: Final = 24
+SIDES: Final = 20
 """Sides of the half polygon, drawn inside the half circle, that stands for the cap on the tool's acceleration."""
 
 
