@@ -80,7 +80,7 @@ def again(route: Route, grid: Grid, tempo: Tempo, ramps: Array, robot: Robot) ->
     motion = tempo.motion(interval, places)
     along = Along.of(route, robot, motion, base.move[interval])
     jerk = (np.abs(along.joints[2]) / np.asarray(robot.joints.max_jerk)).max(axis=1)
-    # When each gridpoint is passed, how fast, and with how much jerk; tempo.at undoes it at the ends of the intervals.
+    # When each gridpoint is passed, how fast, and with how much jerk.
     order = np.lexsort((places, interval))
     passed, speed, jerk = motion.distance[order], motion.speed[order], jerk[order]
     time = tempo.time_at(interval, places)[order]
