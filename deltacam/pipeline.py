@@ -36,9 +36,9 @@ from deltacam.program.atomic import replace_when_done, write_whole
 from deltacam.program.formats import read_program
 from deltacam.program.outputs import Outputs, make_folder
 from deltacam.program.program import DrawingRef, Program
+from deltacam.report import html, listing
 from deltacam.robot.reader import load_robot
 from deltacam.robot.robot import Robot
-from deltacam.verification import html, report_json
 from deltacam.verification import verify as verification
 
 DEFAULT_ROBOT: Final = "delta-300"
@@ -142,7 +142,7 @@ def plan_to_folder(
     outputs.clear()
     planned = plan(drawing, progress=progress, **options)
     progress("report", 0, 1)
-    write_whole(outputs.report_json, report_json.to_json(planned.report).encode())
+    write_whole(outputs.report_json, listing.to_json(planned.report).encode())
     page = html.to_html(planned.report, planned.program, drawing=planned.drawing, title=Path(drawing).stem)
     write_whole(outputs.report_html, page.encode())
     if planned.report.passed:

@@ -9,7 +9,7 @@ from typing import Final
 
 from deltacam.cutting.process import load_process
 from deltacam.pipeline import plan
-from deltacam.verification.picture import to_svg
+from deltacam.report.picture import to_svg
 
 SAMPLES: Final = Path(__file__).parents[1] / "samples"
 FEEDS: Final = {"bracket": 0.5, "gear": 0.15}  # m/s

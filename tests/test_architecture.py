@@ -21,7 +21,8 @@ MAY_IMPORT = {
     "cutting": {"errors", "units", "settings", "model", "geometry", "robot"},
     "motion": {"errors", "units", "model", "geometry", "robot"},
     "program": {"errors", "units", "model", "robot"},
-    "verification": {"errors", "plain", "units", "model", "geometry", "robot", "drawing", "program"},
+    "verification": {"errors", "units", "model", "geometry", "robot", "drawing", "program"},
+    "report": {"errors", "plain", "units", "model", "geometry", "robot", "program", "verification"},
     "inspection": {"errors", "plain", "units", "model", "geometry"},
     "pipeline": {
         "errors",
@@ -34,6 +35,7 @@ MAY_IMPORT = {
         "motion",
         "program",
         "verification",
+        "report",
     },
 }
 """For each room, the rooms that it may import besides itself."""

@@ -17,7 +17,7 @@ from deltacam.geometry import curve as curves
 from deltacam.model import BlockKind, Mode
 from deltacam.pipeline import Outputs, Planned, plan, plan_to_folder, verify
 from deltacam.program.formats import read_program
-from deltacam.verification.report_text import to_text
+from deltacam.report.text import to_text
 
 DXF = Path(__file__).parent / "data" / "dxf"
 DEG = np.pi / 180.0

@@ -133,8 +133,8 @@ def _process(
 
 def _show(planned: Planned, outputs: Outputs, own: Defaults, *, as_json: bool) -> None:
     from deltacam.plain import plain
-    from deltacam.verification.report_json import to_dict
-    from deltacam.verification.report_text import to_text
+    from deltacam.report.listing import to_dict
+    from deltacam.report.text import to_text
 
     files = [outputs.program] if planned.report.passed else []
     files += [outputs.report_json, outputs.report_html]

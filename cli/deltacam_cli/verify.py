@@ -23,8 +23,8 @@ def command(program: Path, drawing: Path | None, robot: str | None, as_json: boo
     deltacam verify out/part.program.csv --drawing part.dxf
     """
     from deltacam.pipeline import verify
-    from deltacam.verification.report_json import to_dict
-    from deltacam.verification.report_text import to_text
+    from deltacam.report.listing import to_dict
+    from deltacam.report.text import to_text
 
     report = verify(program, drawing=drawing, robot=robot)
     if as_json:

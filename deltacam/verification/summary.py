@@ -9,8 +9,8 @@ import numpy as np
 
 from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BlockKind, Check, Drawing, Operation
+from deltacam.verification.checks.measure import DIFFERENCES, length
 from deltacam.verification.evidence import KINDS, MOVING_KINDS, Evidence
-from deltacam.verification.measure import DIFFERENCES, length
 
 _SHARES: Final = (
     "joint speed",

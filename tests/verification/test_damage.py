@@ -11,8 +11,7 @@ from deltacam.geometry import curve as curves
 from deltacam.model import Block, BlockKind, Contour, Drawing, Mode, Placement
 from deltacam.program.program import Program
 from deltacam.verification.verify import verify
-
-Bench = Any  # the class in conftest.py
+from tests.bench import Bench
 
 
 def first_row(program: Program, kind: BlockKind, contour: int | None = None, share: float = 0.5) -> int:

@@ -10,10 +10,9 @@ import pytest
 from deltacam.geometry import curve as curves
 from deltacam.model import BlockKind, Contour, Curve, Drawing, Mode, Operation, Rule, Selection
 from deltacam.program.program import Program
-from deltacam.verification.report_text import to_text
+from deltacam.report.text import to_text
 from deltacam.verification.verify import verify
-
-Bench = Any  # the class in conftest.py
+from tests.bench import Bench
 
 RING, SWEEP, SLIT = 5, 6, 7
 LINES = {

@@ -3,22 +3,21 @@
 import json
 import re
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
 from deltacam.model import Check
 from deltacam.program.program import Program
+from deltacam.report.html import to_html
+from deltacam.report.listing import to_json
+from deltacam.report.text import to_text
 from deltacam.robot.robot import Robot, Triple
+from deltacam.verification.checks.limits import joint_jerk
 from deltacam.verification.evidence import gather
-from deltacam.verification.html import to_html
-from deltacam.verification.limits import joint_jerk
-from deltacam.verification.report_json import to_json
-from deltacam.verification.report_text import to_text
 from deltacam.verification.verify import verify
+from tests.bench import Bench
 
-Bench = Any  # the class in conftest.py
 ROUNDED = 0.5e-12  # rad; half of the last digit of the file
 
 

@@ -17,10 +17,9 @@ from deltacam.geometry import curve as curves
 from deltacam.model import Block, BlockKind, Mode, Placement
 from deltacam.program import csv
 from deltacam.program.program import Program
-from deltacam.verification.checks import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
+from deltacam.verification.checks.table import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
 from deltacam.verification.verify import verify
-
-Bench = Any  # the class in conftest.py
+from tests.bench import Bench
 
 
 def test_a_valid_program_passes_every_check(bench: Bench, program: Program) -> None:

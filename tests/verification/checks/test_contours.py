@@ -1,7 +1,6 @@
 """Completeness and closeness where it is hard: rings that fall apart, sharp corners, curved interpolation."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +9,7 @@ from deltacam.geometry import curve as curves
 from deltacam.model import BlockKind, Contour, Curve, Drawing
 from deltacam.program.program import Program
 from deltacam.verification.verify import verify
-
-Bench = Any  # the class in conftest.py
+from tests.bench import Bench
 
 
 def test_cubic_interpolation_follows_an_arc_where_chords_cut_it(bench: Bench) -> None:

@@ -1,7 +1,7 @@
 """What holds a program back, in words."""
 
 from deltacam.model import Held
-from deltacam.verification.held_back import HEADS, in_words, rows
+from deltacam.report.held_back import HEADS, in_words, rows
 
 HELD = (
     Held(7, 2.0, {"feed": 1.5, "joint 1 jerk": 0.2, "none": 0.3}, {"feed": 1.0}),

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from deltacam.model import Array, Check
+from deltacam.verification.checks.measure import MICROMETRE, ROUNDING_DEG, at_most, at_tick
 from deltacam.verification.evidence import Evidence, in_chunks
-from deltacam.verification.measure import MICROMETRE, ROUNDING_DEG, at_most
 
 
 def poses(evidence: Evidence) -> Check:
     """The arms close at every tick with the elbows outwards; without that there is no position to check."""
     tick, why = evidence.impossible
-    return Check("possible poses", not why, tick=tick if why else None, where=why)
+    return at_tick(evidence, "possible poses", not why, tick=tick if why else None, where=why)
 
 
 def reach_margin(evidence: Evidence) -> Check:
@@ -20,7 +20,7 @@ def reach_margin(evidence: Evidence) -> Check:
     margin = in_chunks(lambda points: evidence.robot.reach_margin(points).min(axis=1), evidence.tool)
     row = int(np.argmin(margin))
     worst = float(margin[row])
-    return Check("reach margin (at least)", worst > 0.0, worst, 0.0, "", row, evidence.place(row))
+    return at_tick(evidence, "reach margin (at least)", worst > 0.0, worst, 0.0, tick=row)
 
 
 def pressure_angle(evidence: Evidence) -> Check:

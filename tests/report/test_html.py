@@ -3,17 +3,16 @@
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
-from typing import Any
 
 import numpy as np
 import pytest
 
 from deltacam.model import Block, BlockKind, Check, Drawing, Finding, LedgerEntry, Mode, Operation, Outcome, Report
 from deltacam.program.program import Program
-from deltacam.verification.html import to_html
+from deltacam.report.html import to_html
 from deltacam.verification.verify import verify
+from tests.bench import Bench
 
-Bench = Any  # the class in conftest.py
 HOSTILE = "</style></title><script>alert(1)</script>\"' onload=x ]]>&lt;\u202e\u2066\x00\x1b[31m\ud800\ufffe\n"
 SPELLED = "</style></title><script>alert(1)</script>\"' onload=x ]]>&lt;\\u202e\\u2066\\x00"
 VOID = {"meta"}

@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import fields, replace
-from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -11,11 +10,10 @@ from hypothesis import strategies as st
 from deltacam.model import Check, Finding, LedgerEntry, Outcome, Report
 from deltacam.plain import plain
 from deltacam.program.program import Program
-from deltacam.verification.report_json import to_json
-from deltacam.verification.report_text import to_text
+from deltacam.report.listing import to_json
+from deltacam.report.text import to_text
 from deltacam.verification.verify import verify
-
-Bench = Any  # the class in conftest.py
+from tests.bench import Bench
 
 HOSTILE = 'CUT\x1b[2J\x1b]0;title\x07\r\n\u2028\u202e\u200b\x9b1m<script>"\ud800'
 
@@ -38,7 +36,8 @@ def test_the_json_has_the_documented_keys_in_order(bench: Bench, program: Progra
     found = json.loads(to_json(report), parse_constant=pytest.fail)
     assert list(found) == ["passed", "checks", "summary", "ledger", "findings", "held"]
     assert found["passed"] is True
-    assert list(found["checks"][0]) == ["name", "passed", "worst", "limit", "unit", "tick", "where"]
+    keys = ["name", "passed", "worst", "limit", "unit", "tick", "where"]
+    assert list(found["checks"][0]) == [*keys, "time", "place", "contour", "layer", "handle", "warns"]
     assert list(found["checks"][0]) == [field.name for field in fields(Check)]
     assert to_json(report) == to_json(verify(program, drawing=bench.drawing))
 

@@ -11,10 +11,10 @@ from scipy.spatial import cKDTree
 
 from deltacam.model import Array, Check, Contour, Drawing, IntArray, Operation
 from deltacam.program.program import Program
+from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.evidence import CHUNK, Evidence, Run, to_sheet, tool_points
 from deltacam.verification.interpolate import between, motion
 from deltacam.verification.kerf_path import ACCURACY, rings, sharp_corners
-from deltacam.verification.measure import at_most
 from deltacam.verification.near import Lines
 
 LENGTH_TOLERANCE: Final = 0.02
@@ -86,19 +86,21 @@ def known_contours(comparison: Comparison) -> Check:
     known: set[tuple[int | None, Operation]] = {(one.number, one.operation) for one in comparison.drawing.contours}
     strange = [run for run in comparison.evidence.runs if (run.contour, run.operation) not in known]
     tick = strange[0].first if strange else None
-    where = comparison.evidence.place(strange[0].first) if strange else ""
-    return Check("cuts of drawn contours only", not strange, float(len(strange)), 0.0, "cuts", tick, where)
+    count = float(len(strange))
+    return at_tick(comparison.evidence, "cuts of drawn contours only", not strange, count, 0.0, "cuts", tick=tick)
 
 
 def cut_once(comparison: Comparison) -> Check:
     """Every contour is cut or engraved exactly once: as many times as its path has rings, and it has at least one."""
     wrong = [target for target in comparison.targets if len(target.runs) != len(target.rings) or not target.rings]
-    words, tick = "", None
-    if wrong:
-        first = wrong[0]
-        words = f"{first.contour.where}: {len(first.runs)} cuts of {len(first.rings)} rings"
-        tick = first.runs[-1].first if first.runs else None
-    return Check("every contour cut once", not wrong, float(len(wrong)), 0.0, "contours", tick, words)
+    name, unit = "every contour cut once", "contours"
+    if not wrong:
+        return Check(name, True, 0.0, 0.0, unit)
+    first, count = wrong[0], float(len(wrong))
+    words = f"{first.contour.where}: {len(first.runs)} cuts of {len(first.rings)} rings"
+    tick = first.runs[-1].first if first.runs else None
+    found = at_tick(comparison.evidence, name, False, count, 0.0, unit, tick=tick, where=words)
+    return at_contour(found, first.contour)
 
 
 def deviation(comparison: Comparison) -> Check:
@@ -119,7 +121,7 @@ def deviation_between(comparison: Comparison) -> Check:
     for some in (cut[first : first + CHUNK] for first in range(0, len(cut), CHUNK)):
         points, (row, why) = tool_points(evidence.robot, between(evidence, some, 0.5))
         if why:
-            return Check("deviation between ticks", False, tick=int(some[row]), where=why)
+            return at_tick(evidence, "deviation between ticks", False, tick=int(some[row]), where=why)
         places[some] = to_sheet(evidence.program, points)
     return _worst_distance(comparison, "deviation between ticks", rows, places, limit)
 
@@ -132,30 +134,36 @@ def uncut(comparison: Comparison) -> Check:
     """
     process = comparison.evidence.program.process
     near = process.tolerance + process.chord_tolerance + ACCURACY
-    missing, words = [0.0], [""]
-    for target in comparison.targets:
-        left, (x, y) = _uncut(comparison.evidence, target, near)
-        missing.append(left)
-        words.append(f"{target.contour.where}: {1e3 * left:.3f} mm, from x {1e3 * x:.3f} y {1e3 * y:.3f} mm")
-    worst, total = int(np.argmax(missing)), sum(missing) * 1e3
-    return Check("uncut length", total == 0.0, total, 0.0, "mm", where=words[worst] if total else "")
+    found = [(*_uncut(comparison.evidence, target, near), target.contour) for target in comparison.targets]
+    total = 1e3 * sum(left for left, _, _ in found)
+    if not total:
+        return Check("uncut length", True, 0.0, 0.0, "mm")
+    left, (x, y), contour = max(found, key=lambda one: one[0])
+    words = f"{contour.where}: {1e3 * left:.3f} mm, from x {1e3 * x:.3f} y {1e3 * y:.3f} mm"
+    return at_contour(Check("uncut length", False, total, 0.0, "mm", where=words, place=(x, y)), contour)
 
 
 def cut_length(comparison: Comparison) -> Check:
     """No cut is longer or shorter than its path, beyond what a curve within the tolerances can be."""
     process = comparison.evidence.program.process
-    worst, words, tick = 0.0, "", None
+    name, limit = "cut length", LENGTH_TOLERANCE * 100.0
+    worst = Check(name, True, 0.0, limit, "% off")
     for target in comparison.targets:
         slack = _length_slack(target) * (process.tolerance + process.chord_tolerance)
         closed = [ring if not target.contour.curve.closed else np.vstack([ring, ring[:1]]) for ring in target.rings]
         nominal = sum(_length(line) for line in closed)
         length = sum(_length(comparison.evidence.sheet[run.first : run.end + 1]) for run in target.runs)
         off = max(abs(length - nominal) - slack, 0.0) / nominal if nominal else float(length > 0.0)
-        if target.runs and off > worst:
-            worst, tick = off, target.runs[0].first
-            words = f"{target.contour.where}: {1e3 * length:.3f} mm for {1e3 * nominal:.3f} mm"
-    limit = LENGTH_TOLERANCE * 100.0
-    return Check("cut length", 100.0 * worst <= limit, 100.0 * worst, limit, "% off", tick, words)
+        percent = 100.0 * off
+        if target.runs and percent > (worst.worst or 0.0):
+            words, tick = (
+                f"{target.contour.where}: {1e3 * length:.3f} mm for {1e3 * nominal:.3f} mm",
+                target.runs[0].first,
+            )
+            worst = at_tick(
+                comparison.evidence, name, percent <= limit, percent, limit, "% off", tick=tick, where=words
+            )
+    return worst
 
 
 def _length_slack(target: Target) -> float:
@@ -178,16 +186,13 @@ def holes_first(comparison: Comparison) -> Check:
     wrong = []
     for target in comparison.targets:
         around = targets.get(target.contour.parent or 0)
-        if (
-            around
-            and around.contour.has_kerf
-            and around.runs
-            and target.runs
-            and target.runs[-1].end > around.runs[0].first
-        ):
+        while around and not (around.contour.has_kerf and around.runs):
+            around = targets.get(around.contour.parent or 0)
+        if around and target.runs and target.runs[-1].end > around.runs[0].first:
             wrong.append((around.runs[0].first, f"{around.contour.where} before {target.contour.where}"))
     tick, words = min(wrong) if wrong else (None, "")
-    return Check("inner contours first", not wrong, float(len(wrong)), 0.0, "contours", tick, words)
+    name, count = "inner contours first", float(len(wrong))
+    return at_tick(comparison.evidence, name, not wrong, count, 0.0, "contours", tick=tick, where=words)
 
 
 def contours_last(comparison: Comparison) -> Check:
@@ -201,7 +206,8 @@ def contours_last(comparison: Comparison) -> Check:
     late = np.flatnonzero(stage < np.maximum.accumulate(stage))
     tick = runs[late[0]].first if len(late) else None
     words = "" if tick is None else f"{runs[late[0]].operation} after cuts: {comparison.evidence.place(tick)}"
-    return Check("contours cut last", not len(late), float(len(late)), 0.0, "cuts", tick, words)
+    name, count = "contours cut last", float(len(late))
+    return at_tick(comparison.evidence, name, not len(late), count, 0.0, "cuts", tick=tick, where=words)
 
 
 def _ticks(runs: tuple[Run, ...], *, including_end: bool) -> IntArray:

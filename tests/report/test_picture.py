@@ -15,7 +15,7 @@ from shapely import LineString, MultiLineString, Point, distance, points
 from deltacam.geometry import curve as curves
 from deltacam.model import Block, BlockKind, Contour, Curve, Drawing, Mode, Operation
 from deltacam.program.program import Program
-from deltacam.verification.picture import speed_colours, to_svg
+from deltacam.report.picture import speed_colours, to_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 HOSTILE = "</style><script>alert(1)</script>\"'&]]>\u202e\u2066\x00\x1b[31m\ud800\ufffe\n"

@@ -10,11 +10,11 @@ import numpy as np
 
 from deltacam.model import Array, Check, Drawing, LedgerEntry, Mode, Operation, Report
 from deltacam.program.program import Program
+from deltacam.report import held_back
+from deltacam.report.picture import draw, shown, tool_speeds
+from deltacam.report.tables import table
 from deltacam.units import to_mm
-from deltacam.verification import held_back
 from deltacam.verification.evidence import Evidence, gather
-from deltacam.verification.picture import draw, shown, tool_speeds
-from deltacam.verification.tables import table
 
 _POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 _COLUMNS: Final = 1000  # of a chart: more setpoints are shown by their smallest and largest values

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from deltacam.model import Check, Report
 from deltacam.plain import plain
-from deltacam.verification.held_back import in_words
+from deltacam.report.held_back import in_words
 
 _WIDEST_PLACE: Final = 100  # characters
 _MOST_FINDINGS: Final = 8

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from shapely import LineString, Point
 
-from deltacam.verification import thin as module
-from deltacam.verification.thin import thin
+from deltacam.report import thin as module
+from deltacam.report.thin import thin
 
 
 @given(

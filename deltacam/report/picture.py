@@ -18,11 +18,11 @@ from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BlockKind, Drawing, IntArray, Operation
 from deltacam.plain import plain
 from deltacam.program.program import Program
+from deltacam.report.thin import thin_lines
 from deltacam.robot.workspace import Workspace
 from deltacam.units import to_mm, to_um
+from deltacam.verification.checks.measure import length
 from deltacam.verification.evidence import LASER_KINDS, Evidence, gather, to_sheet
-from deltacam.verification.measure import length
-from deltacam.verification.thin import thin_lines
 
 _WIDTH: Final = 900.0
 _MARGIN: Final = 36.0

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from deltacam.model import Array, BoolArray, Check, IntArray
+from deltacam.model import Array, BoolArray, Check, Contour, IntArray
 from deltacam.robot.robot import Triple
 from deltacam.verification.evidence import Evidence
 
@@ -18,6 +19,53 @@ MICROMETRE: Final = 1e-6
 
 ROUNDING_DEG: Final = 1e-6
 """How far rounding may move an angle, degrees; 12 decimals of a radian are far below it."""
+
+
+def at_tick(
+    evidence: Evidence,
+    name: str,
+    passed: bool,
+    worst: float | None = None,
+    limit: float | None = None,
+    unit: str = "",
+    *,
+    tick: int | None,
+    where: str | None = None,
+) -> Check:
+    """A check whose worst value is at a tick, which says when, where and at which contour it is.
+
+    Args:
+        evidence: for the place.
+        name: of the check.
+        passed: whether the worst value is within the limit.
+        worst: in ``unit``.
+        limit: in ``unit``.
+        unit: of both.
+        tick: None where there is none: then there is no place either.
+        where: in words; the place of the tool and the contour by default.
+    """
+    if tick is None:
+        return Check(name, passed, worst, limit, unit, None, where or "")
+    block = evidence.block_of(tick)
+    return Check(
+        name,
+        passed,
+        worst,
+        limit,
+        unit,
+        tick,
+        evidence.place(tick) if where is None else where,
+        time=tick / evidence.rate,
+        place=(float(evidence.sheet[tick, 0]), float(evidence.sheet[tick, 1])) if len(evidence.sheet) else None,
+        contour=block.contour,
+        layer=block.layer,
+        handle=block.handles[0] if block.handles else "",
+    )
+
+
+def at_contour(check: Check, contour: Contour) -> Check:
+    """The check of a contour of the drawing, which may be cut or not."""
+    return replace(check, contour=contour.number, layer=contour.layer, handle=contour.handles[0])
 
 
 def at_most(
@@ -47,7 +95,8 @@ def at_most(
     tick = row if ticks is None else int(ticks[row])
     worst = float(values[row])
     where = ", ".join(part for part in (note, evidence.place(tick)) if part)
-    return Check(name, limit is None or worst <= limit, worst, limit, unit, tick, where)
+    passed = limit is None or worst <= limit
+    return at_tick(evidence, name, passed, worst, limit, unit, tick=tick, where=where)
 
 
 def per_joint(
@@ -76,8 +125,7 @@ def none_of(evidence: Evidence, name: str, wrong: BoolArray, unit: str = "ticks"
     rows = np.flatnonzero(wrong)
     if not len(rows):
         return Check(name, True, 0.0, 0.0, unit)
-    first = int(rows[0])
-    return Check(name, False, float(len(rows)), 0.0, unit, first, evidence.place(first))
+    return at_tick(evidence, name, False, float(len(rows)), 0.0, unit, tick=int(rows[0]))
 
 
 def length(vectors: Array) -> Array:

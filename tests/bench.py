@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import pytest
 
 from deltacam.geometry import curve as curves
 from deltacam.model import (
@@ -25,10 +24,10 @@ from deltacam.model import (
     Report,
 )
 from deltacam.program.program import DrawingRef, Program
+from deltacam.report.listing import to_json
+from deltacam.report.text import to_text
 from deltacam.robot.reader import load_robot
 from deltacam.robot.robot import Robot
-from deltacam.verification.report_json import to_json
-from deltacam.verification.report_text import to_text
 
 QUARTER = np.tan(np.pi / 8)
 
@@ -192,8 +191,8 @@ class Bench:
         return replace(program, q=q)
 
 
-@pytest.fixture(scope="session")
-def bench() -> Bench:
+def standard() -> Bench:
+    """The bench that most tests use: the built-in robot without a limit of jerk."""
     process = Process(
         name="test steel",
         source="a test",
@@ -208,9 +207,3 @@ def bench() -> Bench:
     )
     robot = load_robot("delta-300")
     return Bench(robot=replace(robot, joints=replace(robot.joints, max_jerk=None)), process=process)
-
-
-@pytest.fixture(scope="session")
-def program(bench: Bench) -> Program:
-    """A valid program of the test plate."""
-    return bench.program()

@@ -10,6 +10,7 @@ import numpy as np
 from deltacam.model import Block, Check, IntArray
 from deltacam.program.program import TICK_COLUMN, Program
 from deltacam.robot.robot import Triple
+from deltacam.verification.checks.measure import at_tick
 from deltacam.verification.evidence import Evidence
 
 
@@ -28,7 +29,7 @@ def tick_continuity(evidence: Evidence) -> Check:
 def block_table(evidence: Evidence) -> Check:
     """The table of blocks covers every tick once, in order, and agrees with the block column."""
     tick, what = _first_disagreement(evidence.program)
-    return Check("block table", not what, tick=tick if what else None, where=what)
+    return at_tick(evidence, "block table", not what, tick=tick if what else None, where=what)
 
 
 def robot(evidence: Evidence) -> Check:

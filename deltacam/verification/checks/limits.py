@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from deltacam.model import Array, BlockKind, Check
+from deltacam.verification.checks.measure import DIFFERENCES, ROUNDING_DEG, at_most, at_tick, length, per_joint
 from deltacam.verification.evidence import MOVING_KINDS, Evidence
-from deltacam.verification.measure import DIFFERENCES, ROUNDING_DEG, at_most, length, per_joint
 
 _ROUNDED: Final = 0.5e-12  # rad; how far the 12 decimals of the file may move a setpoint
 _NO_FEED: Final = 1e-9  # mm/s; stands for a limit that the process does not give
@@ -21,7 +21,7 @@ def joint_range(evidence: Evidence) -> Check:
     row, joint = (int(index) for index in np.unravel_index(np.argmin(margin), margin.shape))
     worst = float(margin[row, joint])
     where = f"joint {joint + 1}, {evidence.place(row)}"
-    return Check("joint range (at least)", worst >= 0.0, worst, 0.0, "deg inside", row, where)
+    return at_tick(evidence, "joint range (at least)", worst >= 0.0, worst, 0.0, "deg inside", tick=row, where=where)
 
 
 def joint_speed(evidence: Evidence) -> Check:

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from deltacam.model import BlockKind, Check, IntArray, Mode, Operation
+from deltacam.verification.checks.measure import MICROMETRE, at_most, none_of
 from deltacam.verification.evidence import KINDS, LASER_KINDS, Evidence, Run
-from deltacam.verification.measure import MICROMETRE, at_most, none_of
 
 _PIERCE: Final = KINDS.index(BlockKind.PIERCE)
 _LEAD_IN: Final = KINDS.index(BlockKind.LEAD_IN)

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Final
 
 from deltacam.model import Check
-from deltacam.verification import contours, file, laser, limits, reach
-from deltacam.verification.contours import Comparison
+from deltacam.verification.checks import contours, file, laser, limits, reach
+from deltacam.verification.checks.contours import Comparison
 from deltacam.verification.evidence import Evidence
 
 OF_SETPOINTS: Final[tuple[Callable[[Evidence], Check], ...]] = (

@@ -1,0 +1,1 @@
+"""The checks: small functions of one purpose each, in one table."""
