@@ -13,6 +13,7 @@ from deltacam.errors import RobotError
 from deltacam.model import Array, Block, BlockKind, BoolArray, IntArray, Operation
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
+from deltacam.verification.interpolate import between
 
 KINDS: Final = tuple(BlockKind)
 """`Evidence.kind` holds indices into this."""
@@ -53,6 +54,8 @@ class Evidence:
         robot: the machine that it is checked against.
         tool: where the tool is at every tick, (N, 3) m in the base frame; (0, 3) when a pose is impossible.
         sheet: the same in the sheet frame, (N, 2) m.
+        between: where the tool is half-way between every tick and the next, as the controller interpolates, (N - 1, 3)
+            m in the base frame; (0, 3) when a pose is impossible.
         impossible: the first tick at which the arms cannot close, and why; empty text when there is none.
         kind: index into `KINDS` of every row, (N,).
         runs: what is cut and engraved, in order.
@@ -62,6 +65,7 @@ class Evidence:
     robot: Robot
     tool: Array
     sheet: Array
+    between: Array
     impossible: tuple[int, str]
     kind: IntArray
     runs: tuple[Run, ...]
@@ -93,12 +97,18 @@ class Evidence:
 def gather(program: Program, robot: Robot) -> Evidence:
     """The evidence of ``program`` on ``robot``."""
     tool, impossible = tool_points(robot, program.q)
+    between = np.empty((0, 3))
+    if not impossible[1]:
+        between, impossible = _tool_between(robot, program.q)
+    if impossible[1]:
+        tool = between = np.empty((0, 3))
     kind = _kinds(program)
     return Evidence(
         program=program,
         robot=robot,
         tool=tool,
         sheet=to_sheet(program, tool),
+        between=between,
         impossible=impossible,
         kind=kind,
         runs=_runs(program, kind),
@@ -118,6 +128,18 @@ def tool_points(robot: Robot, q: Array) -> tuple[Array, tuple[int, str]]:
         except RobotError as problem:
             return np.empty((0, 3)), (first + _first_impossible(robot, chunk), problem.what)
     return np.concatenate([np.empty((0, 3)), *parts]), (0, "")
+
+
+def _tool_between(robot: Robot, q: Array) -> tuple[Array, tuple[int, str]]:
+    """The tool half-way between all rows of ``q`` (N, 3) rad, as `tool_points` gives it, (N - 1, 3) m."""
+    parts = [np.empty((0, 3))]
+    for first in range(0, len(q) - 1, CHUNK):
+        rows = np.arange(first, min(first + CHUNK, len(q) - 1))
+        points, (row, why) = tool_points(robot, between(robot.controller, q, rows, 0.5))
+        if why:
+            return np.empty((0, 3)), (first + row, f"between this tick and the next: {why}")
+        parts.append(points)
+    return np.concatenate(parts), (0, "")
 
 
 def in_chunks(measure: Callable[[Array], Array], points: Array) -> Array:

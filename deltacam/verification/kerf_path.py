@@ -20,6 +20,11 @@ ACCURACY: Final = 0.3e-6
 _SAGITTA: Final = 0.1e-6  # of the flattened contour, and of the round joins at its corners, m
 
 
+def flattened(contour: Contour) -> Array:
+    """The drawn line itself as a polyline, (K, 2) m, much finer than any tolerance; the first point not repeated."""
+    return flatten(contour.curve, _SAGITTA)[0]
+
+
 def rings(contour: Contour, kerf: float) -> tuple[Array, ...]:
     """The path of a contour as polylines: half a kerf outside an outline, half a kerf inside a hole, else the line.
 
@@ -32,20 +37,24 @@ def rings(contour: Contour, kerf: float) -> tuple[Array, ...]:
         end. None where the kerf swallows the contour or the contour crosses itself; several where the path falls apart
         or closes a bay.
     """
-    points, _ = flatten(contour.curve, _SAGITTA)
+    line = flattened(contour)
     if not contour.has_kerf:
-        return (points,)
-    if len(points) < 3 or not (polygon := Polygon(points)).is_valid:
+        return (line,)
+    if len(line) < 3 or not (polygon := Polygon(line)).is_valid:
         return ()
     if kerf == 0.0:
-        return (points,)
+        return (line,)
     half = kerf / 2.0
-    # A round join of q chords per quarter turn leaves its circle by r (1 - cos(pi / 4q)).
-    quarter = int(np.ceil(np.pi / 4.0 / np.arccos(1.0 - min(_SAGITTA / half, 0.2))))
-    grown = polygon.buffer(-half if contour.is_hole else half, quad_segs=max(quarter, 8), join_style="round")
+    sides = quarter_sides(half)
+    grown = polygon.buffer(-half if contour.is_hole else half, quad_segs=sides, join_style="round")
     parts = list(grown.geoms) if isinstance(grown, MultiPolygon) else [grown]
     found = [ring for part in parts if not part.is_empty for ring in (part.exterior, *part.interiors)]
     return tuple(np.asarray(ring.coords)[:-1, :2] for ring in found)
+
+
+def quarter_sides(radius: float) -> int:
+    """How many chords a quarter of a circle of that ``radius``, m, needs: they leave it by r (1 - cos(pi / 4q))."""
+    return max(int(np.ceil(np.pi / 4.0 / np.arccos(1.0 - min(_SAGITTA / radius, 0.2)))), 8)
 
 
 def sharp_corners(ring: Array, *, closed: bool) -> tuple[Array, Array]:

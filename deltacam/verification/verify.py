@@ -9,8 +9,9 @@ from deltacam.model import Check, Drawing, Finding, Mode, Report
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
 from deltacam.verification.checks import file
-from deltacam.verification.checks.contours import compare, same_drawing
+from deltacam.verification.checks.contours import same_drawing
 from deltacam.verification.checks.table import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
+from deltacam.verification.comparison import compare
 from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.summary import summarize
 

@@ -1,71 +1,13 @@
-"""Checks of the cuts against the drawing: on the kerf path, complete, once, and in an order that drops no part."""
+"""Checks of the cuts against the contours of the drawing: all of them, once, and in an order that drops no part."""
 
 from __future__ import annotations
 
-from collections import defaultdict
-from dataclasses import dataclass
-from typing import Final
-
 import numpy as np
-from scipy.spatial import cKDTree
 
-from deltacam.model import Array, Check, Contour, Drawing, IntArray, Operation
+from deltacam.model import Check, Drawing, Operation
 from deltacam.program.program import Program
-from deltacam.verification.checks.measure import at_contour, at_most, at_tick
-from deltacam.verification.evidence import CHUNK, Evidence, Run, to_sheet, tool_points
-from deltacam.verification.interpolate import between, motion
-from deltacam.verification.kerf_path import ACCURACY, rings, sharp_corners
-from deltacam.verification.near import Lines
-
-LENGTH_TOLERANCE: Final = 0.02
-"""How much longer or shorter than its kerf path a cut may be, beside what the tolerances allow."""
-
-_SHARPEST: Final = np.radians(170.0)  # a sharper corner gets no more allowance than this one
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Target:
-    """A contour of the drawing, its path, and what the program does there.
-
-    Attributes:
-        contour: of the drawing.
-        rings: its kerf path, or the line itself, (K, 2) m each, in the sheet frame; closed like the contour.
-        path: the same, for distances; None where there is no ring.
-        runs: the runs of the program that say they do with it what the drawing wants.
-    """
-
-    contour: Contour
-    rings: tuple[Array, ...]
-    path: Lines | None
-    runs: tuple[Run, ...]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Comparison:
-    """A program beside the drawing that it should cut.
-
-    Attributes:
-        evidence: of the program.
-        drawing: read by the checker itself.
-        targets: one per contour, in the drawing's order.
-    """
-
-    evidence: Evidence
-    drawing: Drawing
-    targets: tuple[Target, ...]
-
-
-def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
-    """Put the cuts of a program beside the contours of a drawing."""
-    runs: defaultdict[tuple[int | None, Operation], list[Run]] = defaultdict(list)
-    for run in evidence.runs:
-        runs[run.contour, run.operation].append(run)
-    targets = []
-    for contour in drawing.contours:
-        found = rings(contour, evidence.program.process.kerf)
-        path = Lines(found, closed=contour.curve.closed) if found else None
-        targets.append(Target(contour, found, path, tuple(runs[contour.number, contour.operation])))
-    return Comparison(evidence, drawing, tuple(targets))
+from deltacam.verification.checks.measure import at_contour, at_tick
+from deltacam.verification.comparison import Comparison
 
 
 def same_drawing(program: Program, drawing: Drawing) -> Check:
@@ -103,83 +45,6 @@ def cut_once(comparison: Comparison) -> Check:
     return at_contour(found, first.contour)
 
 
-def deviation(comparison: Comparison) -> Check:
-    """How far the tool is from the path of the contour that it cuts or engraves, at every tick with the laser on."""
-    limit = comparison.evidence.program.process.tolerance
-    rows = [_ticks(target.runs, including_end=True) for target in comparison.targets]
-    return _worst_distance(comparison, "deviation at ticks", rows, comparison.evidence.sheet, limit)
-
-
-def deviation_between(comparison: Comparison) -> Check:
-    """The same half-way between the ticks, where the controller interpolates the joints."""
-    evidence = comparison.evidence
-    process = evidence.program.process
-    limit = process.tolerance + process.chord_tolerance
-    rows = [_ticks(target.runs, including_end=False) for target in comparison.targets]
-    cut = np.concatenate([np.empty(0, dtype=np.int64), *rows])
-    places = np.zeros((len(evidence.sheet), 2))
-    for some in (cut[first : first + CHUNK] for first in range(0, len(cut), CHUNK)):
-        points, (row, why) = tool_points(evidence.robot, between(evidence, some, 0.5))
-        if why:
-            return at_tick(evidence, "deviation between ticks", False, tick=int(some[row]), where=why)
-        places[some] = to_sheet(evidence.program, points)
-    return _worst_distance(comparison, "deviation between ticks", rows, places, limit)
-
-
-def uncut(comparison: Comparison) -> Check:
-    """How much of the path no cut or engraving comes near, in total; nothing may stay.
-
-    Near is the tolerance of the path and of its chords. A corner that is rounded within the tolerance stays further
-    from its tip, by the inverse of the sine of half the angle between its sides.
-    """
-    process = comparison.evidence.program.process
-    near = process.tolerance + process.chord_tolerance + ACCURACY
-    found = [(*_uncut(comparison.evidence, target, near), target.contour) for target in comparison.targets]
-    total = 1e3 * sum(left for left, _, _ in found)
-    if not total:
-        return Check("uncut length", True, 0.0, 0.0, "mm")
-    left, (x, y), contour = max(found, key=lambda one: one[0])
-    words = f"{contour.where}: {1e3 * left:.3f} mm, from x {1e3 * x:.3f} y {1e3 * y:.3f} mm"
-    return at_contour(Check("uncut length", False, total, 0.0, "mm", where=words, place=(x, y)), contour)
-
-
-def cut_length(comparison: Comparison) -> Check:
-    """No cut is longer or shorter than its path, beyond what a curve within the tolerances can be."""
-    process = comparison.evidence.program.process
-    name, limit = "cut length", LENGTH_TOLERANCE * 100.0
-    worst = Check(name, True, 0.0, limit, "% off")
-    for target in comparison.targets:
-        slack = _length_slack(target) * (process.tolerance + process.chord_tolerance)
-        closed = [ring if not target.contour.curve.closed else np.vstack([ring, ring[:1]]) for ring in target.rings]
-        nominal = sum(_length(line) for line in closed)
-        length = sum(_length(comparison.evidence.sheet[run.first : run.end + 1]) for run in target.runs)
-        off = max(abs(length - nominal) - slack, 0.0) / nominal if nominal else float(length > 0.0)
-        percent = 100.0 * off
-        if target.runs and percent > (worst.worst or 0.0):
-            words, tick = (
-                f"{target.contour.where}: {1e3 * length:.3f} mm for {1e3 * nominal:.3f} mm",
-                target.runs[0].first,
-            )
-            worst = at_tick(
-                comparison.evidence, name, percent <= limit, percent, limit, "% off", tick=tick, where=words
-            )
-    return worst
-
-
-def _length_slack(target: Target) -> float:
-    """How much longer or shorter a curve at the distance d beside the path may be, in multiples of d.
-
-    That is 2 pi for a closed curve that does not cross itself. The shortest way past a corner within d of its tip is
-    straight; where the path turns by t, it is shorter by 2 d tan(t / 4).
-    """
-    corners = [sharp_corners(ring, closed=target.contour.curve.closed) for ring in target.rings]
-    return float(2.0 * np.pi + 2.0 * sum(np.tan(turn / 4.0).sum() for _, turn in corners))
-
-
-def _length(line: Array) -> float:
-    return float(np.hypot(*np.diff(line, axis=0).T).sum())
-
-
 def holes_first(comparison: Comparison) -> Check:
     """A contour is cut after everything that it contains, which would lie loose otherwise."""
     targets = {target.contour.number: target for target in comparison.targets}
@@ -208,53 +73,3 @@ def contours_last(comparison: Comparison) -> Check:
     words = "" if tick is None else f"{runs[late[0]].operation} after cuts: {comparison.evidence.place(tick)}"
     name, count = "contours cut last", float(len(late))
     return at_tick(comparison.evidence, name, not len(late), count, 0.0, "cuts", tick=tick, where=words)
-
-
-def _ticks(runs: tuple[Run, ...], *, including_end: bool) -> IntArray:
-    ranges = [np.arange(run.first, run.end + including_end) for run in runs]
-    return np.concatenate([np.empty(0, dtype=np.int64), *ranges])
-
-
-def _worst_distance(comparison: Comparison, name: str, rows: list[IntArray], places: Array, limit: float) -> Check:
-    """The check that the ``places`` (N, 2) at the ``rows`` of each target are within ``limit`` m of its path.
-
-    What the reader lost of the drawing counts as distance, because the limit is from the exact kerf path.
-    """
-    found = [np.empty(0)]
-    ticks = [np.empty(0, dtype=np.int64)]
-    for target, cut in zip(comparison.targets, rows, strict=True):
-        if target.path is not None and len(cut):
-            found.append(target.path.distance(places[cut], exact_above=limit / 2.0))
-            ticks.append(cut)
-    values = (np.concatenate(found) + comparison.drawing.conversion_error) * 1e6
-    at = np.concatenate(ticks)
-    return at_most(comparison.evidence, name, values, (limit + ACCURACY) * 1e6, "um", ticks=at)
-
-
-def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tuple[float, float]]:
-    """The length of a target's path that no cut of it comes ``near``, m, and where it starts."""
-    if target.path is None:
-        return 0.0, (0.0, 0.0)  # `cut_once` reports it
-    samples, share = target.path.samples, target.path.share
-    if not target.runs:
-        return float(share.sum()), (float(samples[0, 0]), float(samples[0, 1]))
-    cut = Lines([motion(evidence, run, near / 8.0) for run in target.runs], closed=False)
-    distance = cut.distance(samples, exact_above=near / 2.0)
-    left = np.flatnonzero(distance > near)
-    left = left[~_in_rounded_corner(target, samples[left], distance[left], near)]
-    if not len(left):
-        return 0.0, (0.0, 0.0)
-    return float(share[left].sum()), (float(samples[left[0], 0]), float(samples[left[0], 1]))
-
-
-def _in_rounded_corner(target: Target, points: Array, distance: Array, near: float) -> np.ndarray:
-    """Which ``points`` (M, 2) lie so close to a sharp corner that rounding it may leave them at ``distance``, (M,)."""
-    if not len(points):
-        return np.zeros(0, dtype=bool)
-    found = [sharp_corners(ring, closed=target.contour.curve.closed) for ring in target.rings]
-    corners = np.concatenate([corner for corner, _ in found])
-    if not len(corners):
-        return np.zeros(len(points), dtype=bool)
-    half = np.minimum(np.concatenate([turn for _, turn in found]), _SHARPEST) / 2.0
-    away, corner = cKDTree(corners).query(points)
-    return np.asarray((away <= near * (1.0 + np.tan(half[corner]))) & (distance <= near / np.cos(half[corner])))

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Final
 
 from deltacam.model import Check
-from deltacam.verification.checks import contours, file, laser, limits, reach
-from deltacam.verification.checks.contours import Comparison
+from deltacam.verification.checks import contours, file, laser, limits, path, reach
+from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import Evidence
 
 OF_SETPOINTS: Final[tuple[Callable[[Evidence], Check], ...]] = (
@@ -46,10 +46,10 @@ OF_POSITIONS: Final[tuple[Callable[[Evidence], Check], ...]] = (
 OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     contours.known_contours,
     contours.cut_once,
-    contours.deviation,
-    contours.deviation_between,
-    contours.uncut,
-    contours.cut_length,
+    path.deviation,
+    path.deviation_between,
+    path.uncut,
+    path.cut_length,
     contours.holes_first,
     contours.contours_last,
 )

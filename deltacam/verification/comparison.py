@@ -1,0 +1,56 @@
+"""A program beside the drawing that it should cut."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+
+from deltacam.model import Array, Contour, Drawing, Operation
+from deltacam.verification.evidence import Evidence, Run
+from deltacam.verification.kerf_path import rings
+from deltacam.verification.near import Lines
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Target:
+    """A contour of the drawing, its path, and what the program does there.
+
+    Attributes:
+        contour: of the drawing.
+        rings: its kerf path, or the line itself, (K, 2) m each, in the sheet frame; closed like the contour.
+        path: the same, for distances; None where there is no ring.
+        runs: the runs of the program that say they do with it what the drawing wants.
+    """
+
+    contour: Contour
+    rings: tuple[Array, ...]
+    path: Lines | None
+    runs: tuple[Run, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Comparison:
+    """A program beside the drawing that it should cut.
+
+    Attributes:
+        evidence: of the program.
+        drawing: read by the checker itself.
+        targets: one per contour, in the drawing's order.
+    """
+
+    evidence: Evidence
+    drawing: Drawing
+    targets: tuple[Target, ...]
+
+
+def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
+    """Put the cuts of a program beside the contours of a drawing."""
+    runs: defaultdict[tuple[int | None, Operation], list[Run]] = defaultdict(list)
+    for run in evidence.runs:
+        runs[run.contour, run.operation].append(run)
+    targets = []
+    for contour in drawing.contours:
+        found = rings(contour, evidence.program.process.kerf)
+        path = Lines(found, closed=contour.curve.closed) if found else None
+        targets.append(Target(contour, found, path, tuple(runs[contour.number, contour.operation])))
+    return Comparison(evidence, drawing, tuple(targets))
