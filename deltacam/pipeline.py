@@ -154,6 +154,23 @@ def plan_to_folder(
     return planned, outputs
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Verified:
+    """A program that was checked.
+
+    Attributes:
+        program: as it was read.
+        report: what was found.
+        drawing: that it was compared with, if any.
+        robot: that it was checked against.
+    """
+
+    program: Program
+    report: Report
+    drawing: Drawing | None
+    robot: Robot
+
+
 def verify(
     program: Program | str | Path, *, drawing: str | Path | None = None, robot: Robot | str | Path | None = None
 ) -> Report:
@@ -161,20 +178,33 @@ def verify(
 
     Args:
         program: a program, or the path of a program file.
-        drawing: path of the DXF file that it should cut.
+        drawing: path of the DXF file that it should cut, or of a folder that holds a file of the name in the program.
         robot: the robot that it must be for, where that is not simply what the program says.
 
     Raises:
         DeltacamError: a file cannot be read at all; what is wrong with a readable program is in the report.
+    """
+    return examine(program, drawing=drawing, robot=robot).report
+
+
+def examine(
+    program: Program | str | Path, *, drawing: str | Path | None = None, robot: Robot | str | Path | None = None
+) -> Verified:
+    """As `verify`, with what was read on the way.
+
+    Raises:
+        DeltacamError: as `verify`.
     """
     program = program if isinstance(program, Program) else read_program(program)
     if robot is not None and not isinstance(robot, Robot):
         robot = load_robot(robot)
     part = None
     if drawing is not None:
+        path = Path(drawing) / program.drawing.file if Path(drawing).is_dir() else drawing
         scale = program.drawing.metres_per_unit
-        part = read_drawing(drawing, metres_per_unit=scale, selection=program.selection)
-    return verification.verify(program, drawing=part, robot=robot)
+        part = read_drawing(path, metres_per_unit=scale, selection=program.selection)
+    report = verification.verify(program, drawing=part, robot=robot)
+    return Verified(program, report, part, robot or program.robot)
 
 
 class _How(NamedTuple):

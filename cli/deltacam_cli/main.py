@@ -92,7 +92,7 @@ def main() -> NoReturn:
     except click.ClickException as problem:
         code = _refused_by_click(problem, as_json)
     except DeltacamError as problem:
-        code = _refused(problem.what, problem.where, problem.hint, as_json)
+        code = refused(problem.what, problem.where, problem.hint, as_json)
     except BrokenPipeError:
         # Who read the result has gone; without this Python complains once more while it shuts down.
         sys.stdout = None
@@ -114,10 +114,11 @@ def _refused_by_click(problem: click.ClickException, as_json: bool) -> int:
     context = problem.ctx if isinstance(problem, click.UsageError) else None
     command = context.command_path if context else "deltacam"
     what = problem.format_message().rstrip(".")
-    return _refused(what[:1].lower() + what[1:], "", f"see `{command} --help`", as_json)
+    return refused(what[:1].lower() + what[1:], "", f"see `{command} --help`", as_json)
 
 
-def _refused(what: str, where: str, hint: str, as_json: bool) -> int:
+def refused(what: str, where: str, hint: str, as_json: bool) -> int:
+    """Say what the user must change, and where and how; returns the exit code for it."""
     if as_json:
         show_json({"passed": False, "error": {"what": what, "where": where, "hint": hint}})
     from deltacam.plain import plain
@@ -133,7 +134,7 @@ def _fault(problem: Exception, show: bool, as_json: bool) -> int:
     what = f"a fault of deltacam: {type(problem).__name__}: {problem}"
     if show:
         click.echo("".join(traceback.format_exception(problem)), err=True)
-    _refused(what, "", "report it with the drawing and the output of `deltacam --traceback ...`", as_json)
+    refused(what, "", "report it with the drawing and the output of `deltacam --traceback ...`", as_json)
     return EXIT_FAULT
 
 

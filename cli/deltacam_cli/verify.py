@@ -3,33 +3,148 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from deltacam_cli.main import EXIT_FAILED, show_json
+from deltacam.errors import DeltacamError
+from deltacam_cli.main import EXIT_FAILED, EXIT_INPUT, LONGEST_MESSAGE, refused, show_json
+
+if TYPE_CHECKING:
+    from deltacam.pipeline import Verified
+    from deltacam.verification.difference import Difference
+
+PATH = click.Path(path_type=Path)
 
 
 @click.command("verify", no_args_is_help=True)
-@click.argument("program", type=click.Path(path_type=Path))
-@click.option("--drawing", type=click.Path(path_type=Path), help="Also check the cut against this DXF file.")
+@click.argument("programs", metavar="PROGRAM...", nargs=-1, required=True, type=PATH)
+@click.option("--drawing", type=PATH, help="Also check the cut against this DXF file, or that of its name in a folder.")
 @click.option("--robot", help="Also check that the program is for this robot: a built-in name or a file.")
+@click.option("--against", metavar="PROGRAM", type=PATH, help="Also show what is different from this older program.")
+@click.option("--strict", is_flag=True, help="Fail on warnings too, and where a check could not be made.")
+@click.option("--checks", "every_check", is_flag=True, help="List every check, also those that passed.")
+@click.option("--html", metavar="FILE", type=PATH, help="Write the report as a page; for several programs, a folder.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the summary.")
-def command(program: Path, drawing: Path | None, robot: str | None, as_json: bool) -> None:
-    """Verify PROGRAM, trusting nothing the planner said.
+def command(
+    programs: tuple[Path, ...],
+    *,
+    drawing: Path | None,
+    robot: str | None,
+    against: Path | None,
+    strict: bool,
+    every_check: bool,
+    html: Path | None,
+    as_json: bool,
+) -> None:
+    """Verify every PROGRAM, trusting nothing the planner said.
 
     Positions are recomputed from the joint setpoints, and the cut is measured against the drawing itself.
 
     \b
     deltacam verify out/part.program.csv --drawing part.dxf
+    deltacam verify out/*.program.csv --drawing parts --strict
+    deltacam verify new.program.csv --against old.program.csv
     """
-    from deltacam.pipeline import verify
+    from deltacam.pipeline import examine
+
+    several = len(programs) > 1
+    if several and against is not None:
+        raise click.UsageError("--against compares one program with one other")
+    results = []
+    for path in programs:
+        try:
+            verified = examine(path, drawing=drawing, robot=robot)
+            page = None if html is None else _write_page(verified, _page(html, path, several=several))
+            different = None if against is None else _difference(verified, against, drawing, robot)
+        except DeltacamError as problem:
+            if not several:
+                raise
+            results.append(_unread(path, problem))
+            continue
+        passed = verified.report.passed and not (strict and verified.report.warnings)
+        results.append(_listed(path, verified, different, passed=passed))
+        if not as_json:
+            _show(path, verified, different, every_check=every_check, strict=strict, several=several)
+            _say_wrote(page)
+    _finish(results, as_json=as_json)
+
+
+def _page(html: Path, program: Path, *, several: bool) -> Path:
+    """Where the page of a program goes: in the folder ``html`` where there are several."""
+    if not several:
+        return html
+    from deltacam.program.outputs import make_folder
+
+    make_folder(html)
+    return html / f"{program.name.split('.program.')[0]}.report.html"
+
+
+def _write_page(verified: Verified, path: Path) -> Path:
+    from deltacam.program.atomic import write_whole
+    from deltacam.report.html import to_html
+
+    title = Path(verified.program.drawing.file).stem
+    page = to_html(verified.report, verified.program, drawing=verified.drawing, title=title)
+    write_whole(path, page.encode())
+    return path
+
+
+def _difference(verified: Verified, against: Path, drawing: Path | None, robot: str | None) -> Difference:
+    """From the older program to the one that is verified."""
+    from deltacam.pipeline import examine
+    from deltacam.verification.difference import difference
+
+    older = examine(against, drawing=drawing, robot=robot)
+    return difference((older.program, verified.program), (older.report, verified.report))
+
+
+def _listed(path: Path, verified: Verified, different: Difference | None, *, passed: bool) -> dict[str, Any]:
+    """What JSON says of a program."""
+    from deltacam.report.difference import to_dict as difference_to_dict
     from deltacam.report.listing import to_dict
+
+    found = {"program": str(path), **to_dict(verified.report), "passed": passed}
+    return found if different is None else {**found, "difference": difference_to_dict(different)}
+
+
+def _unread(path: Path, problem: DeltacamError) -> dict[str, Any]:
+    """Say that one of several programs cannot be read; the others are verified all the same."""
+    refused(problem.what, problem.where, problem.hint, as_json=False)
+    error = {"what": problem.what, "where": problem.where, "hint": problem.hint}
+    return {"program": str(path), "passed": False, "error": error}
+
+
+def _show(
+    path: Path, verified: Verified, different: Difference | None, *, every_check: bool, strict: bool, several: bool
+) -> None:
+    from deltacam.plain import plain
+    from deltacam.report.difference import to_text as difference_to_text
     from deltacam.report.text import to_text
 
-    report = verify(program, drawing=drawing, robot=robot)
+    if several:
+        click.echo(f"{plain(str(path), longest=LONGEST_MESSAGE)}:")
+    click.echo(to_text(verified.report, every_check=every_check))
+    if different is not None:
+        click.echo(difference_to_text(different))
+    if strict and verified.report.passed and verified.report.warnings:
+        warnings = plain("; ".join(verified.report.warnings), longest=LONGEST_MESSAGE)
+        click.echo(f"error: not passed with --strict: {warnings}", err=True)
+
+
+def _say_wrote(page: Path | None) -> None:
+    from deltacam.plain import plain
+
+    if page is not None:
+        click.echo(f"wrote {plain(str(page), longest=LONGEST_MESSAGE)}")
+
+
+def _finish(results: list[dict[str, Any]], *, as_json: bool) -> None:
+    """The total of several programs, and the exit code: that of the worst of them."""
+    passed, unread = sum(one["passed"] for one in results), sum("error" in one for one in results)
     if as_json:
-        show_json(to_dict(report))
-    else:
-        click.echo(to_text(report))
-    if not report.passed:
-        raise click.exceptions.Exit(EXIT_FAILED)
+        show_json(results[0] if len(results) == 1 else {"passed": passed == len(results), "programs": results})
+    elif len(results) > 1:
+        click.echo(f"{passed} of {len(results)} programs passed")
+    if passed < len(results):
+        raise click.exceptions.Exit(EXIT_INPUT if unread else EXIT_FAILED)

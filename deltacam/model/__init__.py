@@ -20,13 +20,14 @@ from deltacam.model.findings import Finding
 from deltacam.model.ledger import LedgerEntry, Outcome
 from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement
 from deltacam.model.process import Corner, Process
-from deltacam.model.report import Check, Held, Report
+from deltacam.model.report import UNCHECKED, Check, Held, Report, Size
 
 __all__ = [
     "DEFAULT_JOINING",
     "DEFAULT_RULES",
     "EVERYTHING",
     "STRAIGHT",
+    "UNCHECKED",
     "Array",
     "Block",
     "BlockKind",
@@ -50,5 +51,6 @@ __all__ = [
     "Report",
     "Rule",
     "Selection",
+    "Size",
     "readonly",
 ]

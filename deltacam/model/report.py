@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from deltacam.model.findings import Finding
 from deltacam.model.ledger import LedgerEntry
+
+UNCHECKED: Final = "unchecked"
+"""The kind of a finding about checks that could not be made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +49,27 @@ class Check:
 
 
 @dataclass(frozen=True, slots=True)
+class Size:
+    """What is left of a closed contour when the beam has passed.
+
+    Attributes:
+        contour: the number of the drawn contour.
+        drawn: its area, m^2.
+        area: of what is left: the part inside an outline, the opening of a hole, m^2.
+        offset: the difference to what an exact cut would leave, as an even shift of the edge, m.
+        edge: the largest distance from the edge that an exact cut would leave, m; at a corner that of its sides.
+        place: where that is, (x, y) m in the sheet frame.
+    """
+
+    contour: int
+    drawn: float
+    area: float
+    offset: float
+    edge: float
+    place: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
 class Held:
     """What holds back the motion along one contour.
 
@@ -71,6 +95,7 @@ class Report:
         summary: figures for people, by name.
         ledger: of the drawing, where one was given.
         findings: what a person should know.
+        sizes: what is left of every closed contour that is cut; empty where nothing was compared.
         held: what holds back the motion along every contour, as the planner says; empty where nothing was planned.
     """
 
@@ -78,9 +103,16 @@ class Report:
     summary: Mapping[str, Any]
     ledger: tuple[LedgerEntry, ...] = ()
     findings: tuple[Finding, ...] = field(default=())
+    sizes: tuple[Size, ...] = ()
     held: tuple[Held, ...] = ()
 
     @property
     def passed(self) -> bool:
         """Whether every check passed; those that warn do not count."""
         return all(check.passed or check.warns for check in self.checks)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is no failure and still not as it should be: the checks that warn, and those that were not made."""
+        warned = [check.name for check in self.checks if check.warns and not check.passed]
+        return (*warned, *(finding.what for finding in self.findings if finding.kind == UNCHECKED))

@@ -22,10 +22,22 @@ def to_dict(report: Report) -> dict[str, Any]:
     """The report as dicts, lists, texts, numbers, booleans and None."""
     return {
         "passed": report.passed,
+        "warnings": list(report.warnings),
         "checks": [asdict(check) for check in report.checks],
         "summary": dict(report.summary),
         "ledger": [asdict(entry) for entry in report.ledger],
         "findings": [asdict(finding) for finding in report.findings],
+        "sizes": [
+            {
+                "contour": one.contour,
+                "drawn_mm2": one.drawn * 1e6,
+                "left_mm2": one.area * 1e6,
+                "offset_um": one.offset * 1e6,
+                "edge_um": one.edge * 1e6,
+                "place": one.place,
+            }
+            for one in report.sizes
+        ],
         "held": [
             {"contour": one.contour, "time_s": one.time, "bound_s": dict(one.bound), "without_s": dict(one.without)}
             for one in report.held

@@ -21,7 +21,6 @@ from deltacam.program.program import Program
 from deltacam.report.thin import thin_lines
 from deltacam.robot.workspace import Workspace
 from deltacam.units import to_mm, to_um
-from deltacam.verification.checks.measure import length
 from deltacam.verification.evidence import LASER_KINDS, Evidence, gather, to_sheet
 
 _WIDTH: Final = 900.0
@@ -86,7 +85,7 @@ def shown(text: str, *, longest: int = 200) -> str:
 
 def tool_speeds(evidence: Evidence) -> Array:
     """The tool's speed from every setpoint to the next, (N - 1,) mm/s."""
-    return to_mm(evidence.rate) * length(np.diff(evidence.tool, axis=0))
+    return to_mm(1.0) * evidence.speed
 
 
 def _bands(evidence: Evidence) -> IntArray:

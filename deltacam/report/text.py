@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from typing import Any, Final
 
@@ -13,15 +13,29 @@ from deltacam.report.held_back import in_words
 _WIDEST_PLACE: Final = 100  # characters
 _MOST_FINDINGS: Final = 8
 _ROUNDING: Final = 1e-3  # um
+_OF_THE_CUT: Final = {
+    "deviation at ticks": "off its path",
+    "deviation between ticks": "between ticks",
+    "part size": "part size",
+    "part edge": "part edge",
+}
 
 
-def to_text(report: Report) -> str:
-    """The report as lines of text with a line feed at the end; nothing in it makes a terminal do anything."""
+def to_text(report: Report, *, every_check: bool = False) -> str:
+    """The report as lines of text with a line feed at the end; nothing in it makes a terminal do anything.
+
+    Args:
+        report: any.
+        every_check: whether the checks that passed are listed too; the text may then be longer than a screen.
+    """
     rate = report.summary["program"]["rate_hz"]
     failed = [check for check in report.checks if not check.passed]
     lines = [_verdict(report, failed), *_figures(report.summary)]
-    lines += [f"  held by  {in_words(report.held)}", ""] if report.held else [""]
-    lines += [*_failures(failed, rate), *_in_two_columns([check for check in report.checks if check.passed])]
+    lines += [f"  cut      {cut}"] if (cut := _cut(report.checks)) else []
+    lines += [f"  held by  {in_words(report.held)}"] if report.held else []
+    lines += ["", *_failures(failed, rate)] if failed else []
+    lines += ["", *_in_two_columns([check for check in report.checks if check.passed])] if every_check else []
+    lines += [""] if report.findings else []
     for finding in report.findings[:_MOST_FINDINGS]:
         place = f" ({plain(finding.where)})" if finding.where else ""
         hint = f"; {plain(finding.hint, longest=_WIDEST_PLACE)}" if finding.hint else ""
@@ -33,24 +47,39 @@ def to_text(report: Report) -> str:
 
 def _verdict(report: Report, failed: list[Check]) -> str:
     subject = f"{plain(report.summary['drawing'])} ({report.summary['mode']})"
-    if report.passed:
-        compared = "part_size_mm" in report.summary or report.summary["mode"] == "frame"
-        missing = "" if compared else "; not compared with the drawing (--drawing)"
-        return f"PASSED  {subject}: all {len(report.checks)} checks{missing}"
-    return f"FAILED  {subject}: {len(failed)} of {len(report.checks)} checks: {', '.join(c.name for c in failed)}"
+    wrong = [check.name for check in failed if not check.warns]
+    warned = [check.name for check in failed if check.warns]
+    warnings = f"; warning: {', '.join(warned)}" if warned else ""
+    if wrong:
+        return f"FAILED  {subject}: {len(wrong)} of {len(report.checks)} checks: {', '.join(wrong)}{warnings}"
+    compared = "part_size_mm" in report.summary or report.summary["mode"] == "frame"
+    missing = "" if compared else "; not compared with the drawing (--drawing)"
+    passed = f"{len(report.checks) - len(warned)} of {len(report.checks)}" if warned else f"all {len(report.checks)}"
+    return f"PASSED  {subject}: {passed} checks{warnings}{missing}"
+
+
+def _cut(checks: Sequence[Check]) -> str:
+    """How far the cut is from what was drawn, each with its limit, um."""
+    found = {check.name: check for check in checks if check.worst is not None and check.limit is not None}
+    parts = [
+        f"{words} {number_in_words(found[name].worst or 0.0)} / {number_in_words(found[name].limit or 0.0)}"
+        for name, words in _OF_THE_CUT.items()
+        if name in found
+    ]
+    return f"{', '.join(parts)} um" if parts else ""
 
 
 def _figures(summary: Mapping[str, Any]) -> list[str]:
     program = summary["program"]
-    rows = f"{program['rows']} rows at {_number(program['rate_hz'])} Hz"
-    times = ", ".join(f"{kind} {_number(seconds)} s" for kind, seconds in summary["time_s"].items())
+    rows = f"{program['rows']} rows at {number_in_words(program['rate_hz'])} Hz"
+    times = ", ".join(f"{kind} {number_in_words(seconds)} s" for kind, seconds in summary["time_s"].items())
     lines = [*_drawing(summary), f"  time     {program['duration_s']:.3f} s in {rows}: {times}"]
     if "cut_length_mm" in summary:
         names = ("cut", "engraved", "rapid") if summary["contours_engraved"] else ("cut", "rapid")
         lengths = ", ".join(f"{summary[f'{name}_length_mm']:.1f} mm {name}" for name in names)
         engraved = f", {summary['contours_engraved']} engraved" if summary["contours_engraved"] else ""
         lines.append(f"  path     {lengths}, {summary['contours_cut']} contours{engraved}")
-    process = f"kerf {_number(summary['kerf_mm'])} mm, feed {_number(summary['feed_mm_s'])} mm/s"
+    process = f"kerf {number_in_words(summary['kerf_mm'])} mm, feed {number_in_words(summary['feed_mm_s'])} mm/s"
     derived = " (joint limits derived from the tool rating)" if summary.get("derived_joint_limits") else ""
     lines.append(f"  robot    {plain(summary['robot'])}{derived}; {plain(summary['process'])}, {process}")
     if summary["share_of_limit"]:
@@ -75,19 +104,20 @@ def _drawing(summary: Mapping[str, Any]) -> list[str]:
     size = " x ".join(f"{side:.2f}" for side in summary.get("part_size_mm", ()))
     part = f"part {size} mm, " if size else ""
     error = summary["conversion_error_um"]
-    exact = f"read to within {_number(error)} um" if error >= _ROUNDING else "read exactly"
+    exact = f"read to within {number_in_words(error)} um" if error >= _ROUNDING else "read exactly"
     return [f"  drawing  {part}unit {plain(summary['unit'])}, {exact}"]
 
 
 def _failures(checks: list[Check], rate: float) -> list[str]:
-    """One line per failed check: name, worst value, limit, tick, time and place."""
+    """One line per check that failed or warns: name, worst value, limit, tick, time and place."""
     rows = [(check.name, *_values(check)) for check in checks]
     name, worst, limit = (max((len(row[column]) for row in rows), default=0) for column in range(3))
     lines = []
     for check, row in zip(checks, rows, strict=True):
         at = "" if check.tick is None else f"tick {check.tick} ({check.tick / rate:.4f} s) "
         place = f"{at}{plain(check.where, longest=_WIDEST_PLACE)}"
-        lines.append(f"  FAIL  {row[0]:<{name}}  {row[1]:>{worst}} {row[2]:<{limit}}  {place}".rstrip())
+        word = "WARN" if check.warns else "FAIL"
+        lines.append(f"  {word}  {row[0]:<{name}}  {row[1]:>{worst}} {row[2]:<{limit}}  {place}".rstrip())
     return lines
 
 
@@ -106,13 +136,13 @@ def _aligned(checks: list[Check]) -> list[str]:
 
 def _values(check: Check) -> tuple[str, str]:
     """The worst value, and the limit with its unit; empty where there was nothing to measure."""
-    worst = "" if check.worst is None else _number(check.worst)
+    worst = "" if check.worst is None else number_in_words(check.worst)
     if check.limit is None:
         return worst, f"{check.unit}, no limit" if worst else ""
-    return worst, f"/ {_number(check.limit)} {check.unit}".rstrip()
+    return worst, f"/ {number_in_words(check.limit)} {check.unit}".rstrip()
 
 
-def _number(value: float) -> str:
+def number_in_words(value: float) -> str:
     """Four significant digits, without an exponent where people would not write one."""
     if value == 0.0 or 1e-3 <= abs(value) < 1e9:
         digits = f"{value:.4g}"

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
+from typing import Final
 
-from deltacam.model import Array, Contour, Drawing, Operation
+from deltacam.model import Array, Contour, Drawing, Operation, Size
 from deltacam.verification.evidence import Evidence, Run
 from deltacam.verification.kerf_path import rings
 from deltacam.verification.near import Lines
+from deltacam.verification.sizes import size
+from deltacam.verification.way import motion
+
+_ACCURACY: Final = 0.5e-6  # m, of the way of the tool between ticks
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,11 +41,13 @@ class Comparison:
         evidence: of the program.
         drawing: read by the checker itself.
         targets: one per contour, in the drawing's order.
+        sizes: what is left of every closed contour that is cut, in the same order.
     """
 
     evidence: Evidence
     drawing: Drawing
     targets: tuple[Target, ...]
+    sizes: tuple[Size, ...]
 
 
 def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
@@ -48,9 +55,12 @@ def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
     runs: defaultdict[tuple[int | None, Operation], list[Run]] = defaultdict(list)
     for run in evidence.runs:
         runs[run.contour, run.operation].append(run)
-    targets = []
+    kerf, targets, sizes = evidence.program.process.kerf, [], []
     for contour in drawing.contours:
-        found = rings(contour, evidence.program.process.kerf)
+        found = rings(contour, kerf)
         path = Lines(found, closed=contour.curve.closed) if found else None
-        targets.append(Target(contour, found, path, tuple(runs[contour.number, contour.operation])))
-    return Comparison(evidence, drawing, tuple(targets))
+        done = tuple(runs[contour.number, contour.operation])
+        targets.append(Target(contour, found, path, done))
+        if contour.has_kerf and found and done:
+            sizes.append(size(contour, found, [motion(evidence, run, _ACCURACY) for run in done], kerf=kerf))
+    return Comparison(evidence, drawing, tuple(targets), tuple(sizes))

@@ -56,6 +56,7 @@ class Evidence:
         sheet: the same in the sheet frame, (N, 2) m.
         between: where the tool is half-way between every tick and the next, as the controller interpolates, (N - 1, 3)
             m in the base frame; (0, 3) when a pose is impossible.
+        speed: of the tool from every tick to the next, (N - 1,) m/s; (0,) when a pose is impossible.
         impossible: the first tick at which the arms cannot close, and why; empty text when there is none.
         kind: index into `KINDS` of every row, (N,).
         runs: what is cut and engraved, in order.
@@ -66,6 +67,7 @@ class Evidence:
     tool: Array
     sheet: Array
     between: Array
+    speed: Array
     impossible: tuple[int, str]
     kind: IntArray
     runs: tuple[Run, ...]
@@ -109,6 +111,7 @@ def gather(program: Program, robot: Robot) -> Evidence:
         tool=tool,
         sheet=to_sheet(program, tool),
         between=between,
+        speed=length(np.diff(tool, axis=0)) * robot.controller.rate_hz,
         impossible=impossible,
         kind=kind,
         runs=_runs(program, kind),
@@ -146,6 +149,14 @@ def in_chunks(measure: Callable[[Array], Array], points: Array) -> Array:
     """``measure`` of ``points`` (N, ...), a bounded number at a time; it returns (n,) for n points."""
     parts = [measure(points[first : first + CHUNK]) for first in range(0, len(points), CHUNK)]
     return np.concatenate([np.empty(0), *parts])
+
+
+def length(vectors: Array) -> Array:
+    """How long the ``vectors`` (N, 3) are, (N,), without an array of their size on the way."""
+    square = vectors[:, 0] * vectors[:, 0]
+    for column in (vectors[:, 1], vectors[:, 2]):
+        square += column * column
+    return np.asarray(np.sqrt(square, out=square))
 
 
 def _first_impossible(robot: Robot, q: Array) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 
 from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BlockKind, Check, Drawing, Operation
-from deltacam.verification.checks.measure import DIFFERENCES, length
+from deltacam.verification.checks.measure import DIFFERENCES
 from deltacam.verification.evidence import KINDS, MOVING_KINDS, Evidence
 
 _SHARES: Final = (
@@ -70,7 +70,7 @@ def _times(evidence: Evidence) -> dict[str, float]:
 def _lengths(evidence: Evidence) -> dict[str, Any]:
     if not len(evidence.tool):
         return {}
-    steps = length(np.diff(evidence.tool, axis=0))
+    steps = evidence.speed / evidence.rate
     working = evidence.is_kind(MOVING_KINDS)[:-1]
     engraving = evidence.is_kind(frozenset({BlockKind.ENGRAVE}))[:-1]
     rapid = evidence.is_kind(frozenset({BlockKind.RAPID}))[:-1]

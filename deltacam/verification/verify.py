@@ -5,13 +5,13 @@ Nothing of the planner is used here: not its paths, not its time law, not its ke
 
 from __future__ import annotations
 
-from deltacam.model import Check, Drawing, Finding, Mode, Report
+from deltacam.model import UNCHECKED, Drawing, Finding, Mode, Report, Size
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
 from deltacam.verification.checks import file
 from deltacam.verification.checks.contours import same_drawing
 from deltacam.verification.checks.table import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
-from deltacam.verification.comparison import compare
+from deltacam.verification.comparison import Comparison, compare
 from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.summary import summarize
 
@@ -35,24 +35,27 @@ def verify(program: Program, *, drawing: Drawing | None, robot: Robot | None = N
         findings.append(Finding(other_jerk))
     if drawing:
         checks.append(same_drawing(program, drawing))
+    sizes: tuple[Size, ...] = ()
     if evidence.impossible[1]:
-        findings.append(Finding("the arms cannot close at some tick, so that nothing about positions was checked"))
+        what = "the arms cannot close at some tick, so that nothing about positions was checked"
+        findings.append(Finding(what, kind=UNCHECKED))
     else:
         checks += [check(evidence) for check in OF_POSITIONS]
-        checks += _contour_checks(evidence, drawing, findings)
+        comparison = _compared(evidence, drawing, findings)
+        checks += [check(comparison) for check in OF_CONTOURS if comparison]
+        sizes = comparison.sizes if comparison else ()
     ledger = drawing.ledger if drawing else ()
-    return Report(tuple(checks), summarize(evidence, drawing, checks), ledger, tuple(findings))
+    return Report(tuple(checks), summarize(evidence, drawing, checks), ledger, tuple(findings), sizes)
 
 
-def _contour_checks(evidence: Evidence, drawing: Drawing | None, findings: list[Finding]) -> list[Check]:
-    """The checks of the contours; where they are not made, ``findings`` gets the reason."""
+def _compared(evidence: Evidence, drawing: Drawing | None, findings: list[Finding]) -> Comparison | None:
+    """The program beside its drawing; where that makes no sense, ``findings`` gets the reason."""
     if evidence.program.mode is Mode.FRAME:
         findings.append(Finding("a frame program cuts nothing: its path was not compared with the drawing"))
-        return []
+        return None
     if drawing is None:
         name = evidence.program.drawing.file
         what = "not checked without the drawing: deviation, completeness and order of the cuts"
-        findings.append(Finding(what, hint=f"give the drawing: --drawing {name}"))
-        return []
-    comparison = compare(evidence, drawing)
-    return [check(comparison) for check in OF_CONTOURS]
+        findings.append(Finding(what, hint=f"give the drawing: --drawing {name}", kind=UNCHECKED))
+        return None
+    return compare(evidence, drawing)

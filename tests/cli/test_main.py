@@ -175,7 +175,7 @@ def test_an_interrupt_leaves_nothing_half_written(tmp_path: Path) -> None:
     code = (
         "import deltacam.pipeline as p, os, signal\n"
         "def interrupted(*a, **k): os.kill(os.getpid(), signal.SIGINT)\n"
-        "p.report_json.to_json = interrupted\n"
+        "p.listing.to_json = interrupted\n"
         "from deltacam_cli.main import main; main()"
     )
     run = subprocess.run(

@@ -1,6 +1,7 @@
 """The report as JSON and as text."""
 
 import json
+import re
 from dataclasses import fields, replace
 
 import pytest
@@ -34,7 +35,7 @@ def bad(bench: Bench, program: Program) -> Report:
 def test_the_json_has_the_documented_keys_in_order(bench: Bench, program: Program) -> None:
     report = verify(program, drawing=bench.drawing)
     found = json.loads(to_json(report), parse_constant=pytest.fail)
-    assert list(found) == ["passed", "checks", "summary", "ledger", "findings", "held"]
+    assert list(found) == [*("passed", "warnings", "checks", "summary", "ledger", "findings", "sizes", "held")]
     assert found["passed"] is True
     keys = ["name", "passed", "worst", "limit", "unit", "tick", "where"]
     assert list(found["checks"][0]) == [*keys, "time", "place", "contour", "layer", "handle", "warns"]
@@ -58,9 +59,29 @@ def test_the_text_says_the_verdict_first_and_fits_a_screen(bench: Bench, program
     assert max(map(len, good)) <= 120
     lines = to_text(bad).splitlines()
     assert lines[0].startswith("FAILED  ")
-    first = next(index for index, line in enumerate(lines) if line.startswith("  ok"))
-    assert all("  FAIL  " in line for line in lines[first - sum(" FAIL " in line for line in lines) : first])
+    assert len([line for line in lines if line.startswith("  FAIL  ")]) == len(bench.failed(bad))
+    assert not [line for line in lines if line.startswith("  ok  ")]
     assert any("tick 7" in line and "(1.7" in line and "s) x " in line for line in lines)
+
+
+def test_every_check_is_listed_where_that_is_asked_for(bench: Bench, program: Program, bad: Report) -> None:
+    for report in (bad, verify(program, drawing=bench.drawing)):
+        listed = re.findall(r"  (?:ok|FAIL)  (\S.*?)(?:  |$)", to_text(report, every_check=True), flags=re.MULTILINE)
+        assert sorted(listed) == sorted(check.name for check in report.checks)
+
+
+def test_a_warning_is_no_failure_and_is_said_in_the_first_line(bench: Bench, program: Program) -> None:
+    check = Check("rough edge", False, 2.0, 1.0, "um", warns=True)
+    good = verify(program, drawing=bench.drawing)
+    report = replace(good, checks=(*good.checks, check))
+    assert report.passed
+    assert report.warnings == ("rough edge",)
+    lines = to_text(report).splitlines()
+    assert lines[0].endswith(f"{len(good.checks)} of {len(report.checks)} checks; warning: rough edge")
+    assert "  WARN  rough edge  2 / 1 um" in lines
+    without = verify(program, drawing=None)
+    assert without.passed
+    assert [what.partition(":")[0] for what in without.warnings] == ["not checked without the drawing"]
 
 
 def test_the_text_of_a_program_without_cuts_or_positions_is_whole(bench: Bench, program: Program) -> None:
@@ -77,7 +98,8 @@ def test_the_text_of_a_program_without_cuts_or_positions_is_whole(bench: Bench, 
     [(1_600_400.4, "1600400"), (99_999.96, "100000"), (14.0, "14"), (0.0, "0"), (1.4e-7, "1.4e-07"), (1e12, "1.0e+12")],
 )
 def test_a_number_has_an_exponent_only_where_people_would_write_one(program: Program, value: float, shown: str) -> None:
-    text = to_text(replace(verify(program, drawing=None), checks=(Check("some", True, value, value, "um"),)))
+    report = replace(verify(program, drawing=None), checks=(Check("some", True, value, value, "um"),))
+    text = to_text(report, every_check=True)
     assert f"  ok  some  {shown} / {shown} um\n" in text
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from deltacam.model import Check, Drawing, Operation
 from deltacam.program.program import Program
-from deltacam.verification.checks.measure import at_contour, at_tick
+from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison
 
 
@@ -43,6 +43,16 @@ def cut_once(comparison: Comparison) -> Check:
     tick = first.runs[-1].first if first.runs else None
     found = at_tick(comparison.evidence, name, False, count, 0.0, unit, tick=tick, where=words)
     return at_contour(found, first.contour)
+
+
+def closed(comparison: Comparison) -> Check:
+    """The cut of a closed contour ends where it started."""
+    evidence = comparison.evidence
+    runs = [run for target in comparison.targets if target.contour.curve.closed for run in target.runs]
+    first, end = (np.array(ticks, dtype=np.int64) for ticks in ([run.first for run in runs], [run.end for run in runs]))
+    gap = np.hypot(*(evidence.sheet[end] - evidence.sheet[first]).T)
+    limit = evidence.program.process.tolerance
+    return at_most(evidence, "gap at the end of a cut", gap * 1e6, limit * 1e6, "um", ticks=end)
 
 
 def holes_first(comparison: Comparison) -> Check:

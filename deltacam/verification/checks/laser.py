@@ -8,7 +8,12 @@ import numpy as np
 
 from deltacam.model import BlockKind, Check, IntArray, Mode, Operation
 from deltacam.verification.checks.measure import MICROMETRE, at_most, none_of
-from deltacam.verification.evidence import KINDS, LASER_KINDS, Evidence, Run
+from deltacam.verification.evidence import KINDS, LASER_KINDS, MOVING_KINDS, Evidence, Run
+
+REST: Final = 0.02
+"""How long the laser may stay on at rest beyond the pierce, s."""
+WINDOW: Final = 1e-3
+"""Length of cut over which energy is added up, m."""
 
 _PIERCE: Final = KINDS.index(BlockKind.PIERCE)
 _LEAD_IN: Final = KINDS.index(BlockKind.LEAD_IN)
@@ -71,6 +76,47 @@ def cut_after_pierce(evidence: Evidence) -> Check:
             or following.contour != evidence.block_of(row).contour
         )
     return none_of(evidence, "cut after every pierce", wrong, "pierces")
+
+
+def laser_at_rest(evidence: Evidence) -> Check:
+    """How long the laser burns in one place beyond the pierce there: `REST`, or three ticks, for a stop in a corner.
+
+    At rest is slower than a ten-thousandth of the feed.
+    """
+    process, on = evidence.program.process, (evidence.program.power > 0.0)[:-1]
+    still = on & (evidence.speed < 1e-4 * min(process.feed, process.engrave_feed or process.feed))
+    edges = np.flatnonzero(np.diff(still, prepend=False, append=False))
+    first, end = edges[::2], edges[1::2]
+    pierced = np.concatenate([[0], np.cumsum(evidence.kind == _PIERCE)])
+    excess = (end - first) / evidence.rate - process.pierce_time * (pierced[end] > pierced[first])
+    limit = max(REST, 3.0 / evidence.rate)
+    return at_most(evidence, "laser on at rest", excess * 1e3, limit * 1e3, "ms beyond the pierce", ticks=first)
+
+
+def line_energy(evidence: Evidence) -> Check:
+    """The most energy along `WINDOW` of a cut, as a multiple of what the process gives at its feed; there is no limit.
+
+    Where the tool slows down at constant power, in corners and bends and at both ends, it burns more.
+    """
+    process, moving = evidence.program.process, evidence.is_kind(MOVING_KINDS)[:-1]
+    step = np.where(moving, evidence.speed, 0.0) / evidence.rate
+    spent = np.where(moving, evidence.program.power[:-1] / evidence.rate, 0.0)
+    way, energy = (np.concatenate([[0.0], np.cumsum(one)]) for one in (step, spent))
+    # Only windows within one run count: way and energy of different runs follow each other here.
+    ends = np.array([run.end for run in evidence.runs], dtype=np.int64)
+    rows = [np.arange(run.first, run.end) for run in evidence.runs]
+    ticks = np.concatenate([np.empty(0, dtype=np.int64), *rows])
+    last = way[np.repeat(ends, [len(one) for one in rows])]
+    inside = way[ticks] + WINDOW <= last
+    ticks = ticks[inside]
+    found = (np.interp(way[ticks] + WINDOW, way, energy) - energy[ticks]) / WINDOW
+    engraving = evidence.kind[ticks] == _ENGRAVE
+    usual = np.where(
+        engraving,
+        (process.engrave_power or process.power) / (process.engrave_feed or process.feed),
+        process.power / process.feed,
+    )
+    return at_most(evidence, "energy per mm", found / usual, None, "times that at the feed", ticks=ticks)
 
 
 def _pierced_for(evidence: Evidence, run: Run, start: IntArray) -> float:

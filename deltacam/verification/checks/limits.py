@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from deltacam.model import Array, BlockKind, Check
-from deltacam.verification.checks.measure import DIFFERENCES, ROUNDING_DEG, at_most, at_tick, length, per_joint
-from deltacam.verification.evidence import MOVING_KINDS, Evidence
+from deltacam.verification.checks.measure import DIFFERENCES, ROUNDING_DEG, at_most, at_tick, per_joint
+from deltacam.verification.evidence import MOVING_KINDS, Evidence, length
+from deltacam.verification.interpolate import peaks
 
 _ROUNDED: Final = 0.5e-12  # rad; how far the 12 decimals of the file may move a setpoint
 _NO_FEED: Final = 1e-9  # mm/s; stands for a limit that the process does not give
@@ -58,10 +60,35 @@ def joint_jerk(evidence: Evidence) -> Check:
     return per_joint(evidence, "joint jerk", jerk, evidence.robot.joints.max_jerk, "deg/s3", ticks=ticks)
 
 
+def joint_speed_between(evidence: Evidence) -> Check:
+    """The largest joint speed between the ticks; a warning, since the limits are those of the planned motion.
+
+    Under linear interpolation it is that of `joint_speed`. Hermite curves go faster where the acceleration changes, by
+    up to a sixth of what it adds in a tick.
+    """
+    q, limits = evidence.program.q, evidence.robot.joints.max_speed
+    cubic = evidence.robot.controller.interpolation == "cubic"
+    speed = peaks(evidence.robot.controller, q)[0] if cubic else np.abs(np.diff(q, axis=0)) * evidence.rate
+    ticks = np.arange(len(speed))
+    return replace(per_joint(evidence, "joint speed between ticks", speed, limits, "deg/s", ticks=ticks), warns=True)
+
+
+def joint_acceleration_between(evidence: Evidence) -> Check:
+    """The largest joint acceleration of the controller's own curves between the ticks, likewise a warning.
+
+    Linear interpolation has none: it changes its speed at the ticks, as `joint_acceleration` measures it.
+    """
+    q, limits = evidence.program.q, evidence.robot.joints.max_acceleration
+    cubic = evidence.robot.controller.interpolation == "cubic"
+    acceleration = peaks(evidence.robot.controller, q)[1] if cubic else np.zeros((max(len(q) - 1, 0), 3))
+    name, ticks = "joint acceleration between ticks", np.arange(len(acceleration))
+    return replace(per_joint(evidence, name, acceleration, limits, "deg/s2", ticks=ticks), warns=True)
+
+
 def tool_speed(evidence: Evidence) -> Check:
     """First differences of the tool's positions."""
     limit = evidence.robot.tool.max_speed * DIFFERENCES
-    return at_most(evidence, "tool speed", _speeds(evidence), limit, "m/s")
+    return at_most(evidence, "tool speed", evidence.speed, limit, "m/s")
 
 
 def tool_acceleration(evidence: Evidence) -> Check:
@@ -73,7 +100,7 @@ def tool_acceleration(evidence: Evidence) -> Check:
 
 def feed(evidence: Evidence) -> Check:
     """The tool's speed while the laser moves along the sheet, cutting or engraving: the one nearer to its limit."""
-    process, speeds = evidence.program.process, _speeds(evidence) * 1e3
+    process, speeds = evidence.program.process, evidence.speed * 1e3
     groups = (
         (MOVING_KINDS - {BlockKind.ENGRAVE}, process.feed),
         (frozenset({BlockKind.ENGRAVE}), process.engrave_feed or 0.0),
@@ -90,14 +117,9 @@ def feed(evidence: Evidence) -> Check:
 def rest_at_ends(evidence: Evidence) -> Check:
     """The first and the last step are no longer than from rest at the tool's full acceleration, a dt^2 / 2."""
     ends = np.array([0, len(evidence.tool) - 2] if len(evidence.tool) > 1 else [], dtype=np.int64)
-    steps = _speeds(evidence)[ends] / evidence.rate
+    steps = evidence.speed[ends] / evidence.rate
     limit = 0.5 * evidence.robot.tool.max_acceleration / evidence.rate**2 * DIFFERENCES
     return at_most(evidence, "rest at both ends", steps * 1e6, limit * 1e6, "um per tick", ticks=ends)
-
-
-def _speeds(evidence: Evidence) -> Array:
-    """The mean speed from every tick to the next, (N - 1,) m/s."""
-    return length(np.diff(evidence.tool, axis=0)) * evidence.rate
 
 
 def _held_differences(values: Array, order: int) -> Array:

@@ -126,11 +126,3 @@ def none_of(evidence: Evidence, name: str, wrong: BoolArray, unit: str = "ticks"
     if not len(rows):
         return Check(name, True, 0.0, 0.0, unit)
     return at_tick(evidence, name, False, float(len(rows)), 0.0, unit, tick=int(rows[0]))
-
-
-def length(vectors: Array) -> Array:
-    """How long the ``vectors`` (N, 3) are, (N,), without an array of their size on the way."""
-    square = vectors[:, 0] * vectors[:, 0]
-    for column in (vectors[:, 1], vectors[:, 2]):
-        square += column * column
-    return np.asarray(np.sqrt(square, out=square))

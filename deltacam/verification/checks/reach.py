@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from deltacam.model import Array, Check
+from deltacam.model import Array, Check, IntArray
 from deltacam.verification.checks.measure import MICROMETRE, ROUNDING_DEG, at_most, at_tick
 from deltacam.verification.evidence import Evidence, in_chunks
 
@@ -16,30 +18,37 @@ def poses(evidence: Evidence) -> Check:
 
 
 def reach_margin(evidence: Evidence) -> Check:
-    """No arm is at the edge of its reach; the margin is a share of the upper arm, and at least 0."""
-    margin = in_chunks(lambda points: evidence.robot.reach_margin(points).min(axis=1), evidence.tool)
-    row = int(np.argmin(margin))
-    worst = float(margin[row])
-    return at_tick(evidence, "reach margin (at least)", worst > 0.0, worst, 0.0, tick=row)
+    """No arm is at the edge of its reach, at ticks and between them; the margin is a share of the upper arm."""
+    margin, ticks = _everywhere(evidence, lambda points: -evidence.robot.reach_margin(points).min(axis=1))
+    row = int(np.argmax(margin))
+    worst = -float(margin[row])
+    return at_tick(evidence, "reach margin (at least)", worst > 0.0, worst, 0.0, tick=int(ticks[row]))
 
 
 def pressure_angle(evidence: Evidence) -> Check:
-    """Both pressure angles of every arm, which grow to 90 degrees at a singularity."""
+    """Both pressure angles of every arm, which grow to 90 degrees at a singularity, at ticks and between them."""
 
     def largest(points: Array) -> Array:
         mu1, mu2 = evidence.robot.pressure_angles(points)
         return np.asarray(np.degrees(np.maximum(mu1, mu2).max(axis=1)))
 
     limit = float(np.degrees(evidence.robot.workspace.max_pressure_angle)) + ROUNDING_DEG
-    return at_most(evidence, "pressure angle", in_chunks(largest, evidence.tool), limit, "deg")
+    angles, ticks = _everywhere(evidence, largest)
+    return at_most(evidence, "pressure angle", angles, limit, "deg", ticks=ticks)
 
 
 def forearm_swing(evidence: Evidence) -> Check:
     """How far the forearms lean out of their arms' planes; where the robot gives no limit, 90 degrees."""
-    swing = in_chunks(lambda points: np.degrees(evidence.robot.forearm_swing(points).max(axis=1)), evidence.tool)
+    swing, ticks = _everywhere(evidence, lambda points: np.degrees(evidence.robot.forearm_swing(points).max(axis=1)))
     stated = evidence.robot.workspace.max_forearm_swing
     limit = 90.0 if stated is None else float(np.degrees(stated))
-    return at_most(evidence, "forearm swing", swing, limit + ROUNDING_DEG, "deg")
+    return at_most(evidence, "forearm swing", swing, limit + ROUNDING_DEG, "deg", ticks=ticks)
+
+
+def _everywhere(evidence: Evidence, measure: Callable[[Array], Array]) -> tuple[Array, IntArray]:
+    """``measure`` at every tick and half-way to the next one, and the ticks: (2 N - 1,) each."""
+    values = [in_chunks(measure, evidence.tool), in_chunks(measure, evidence.between)]
+    return np.concatenate(values), np.concatenate([np.arange(len(one)) for one in values])
 
 
 def sheet_plane(evidence: Evidence) -> Check:
@@ -54,6 +63,20 @@ def sheet_area(evidence: Evidence) -> Check:
     """The tool stays on the sheet."""
     outside = evidence.robot.workspace.excess(evidence.tool[:, :2])
     return at_most(evidence, "sheet area", outside * 1e3, MICROMETRE * 1e3, "mm outside")
+
+
+def sheet_plane_between(evidence: Evidence) -> Check:
+    """Half-way between the ticks, where joints that move evenly lift the tool off the plane: the chord tolerance."""
+    off = np.abs(evidence.between[:, 2] - evidence.robot.workspace.sheet_z)
+    limit = evidence.program.process.chord_tolerance + MICROMETRE
+    return at_most(evidence, "sheet plane between ticks", off * 1e6, limit * 1e6, "um")
+
+
+def sheet_area_between(evidence: Evidence) -> Check:
+    """The tool stays on the sheet half-way between the ticks, to the chord tolerance."""
+    outside = evidence.robot.workspace.excess(evidence.between[:, :2])
+    limit = evidence.program.process.chord_tolerance + MICROMETRE
+    return at_most(evidence, "sheet area between ticks", outside * 1e3, limit * 1e3, "mm outside")
 
 
 def park(evidence: Evidence) -> Check:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from deltacam.model import Check
-from deltacam.verification.checks import contours, file, laser, limits, path, reach
+from deltacam.verification.checks import contours, file, laser, limits, overlap, parts, path, reach
 from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import Evidence
 
@@ -19,6 +19,8 @@ OF_SETPOINTS: Final[tuple[Callable[[Evidence], Check], ...]] = (
     limits.joint_speed,
     limits.joint_acceleration,
     limits.joint_jerk,
+    limits.joint_speed_between,
+    limits.joint_acceleration_between,
     laser.power_range,
     laser.laser_off,
     laser.laser_on,
@@ -34,12 +36,16 @@ OF_POSITIONS: Final[tuple[Callable[[Evidence], Check], ...]] = (
     reach.forearm_swing,
     reach.sheet_plane,
     reach.sheet_area,
+    reach.sheet_plane_between,
+    reach.sheet_area_between,
     reach.park,
     limits.rest_at_ends,
     limits.tool_speed,
     limits.tool_acceleration,
     limits.feed,
     laser.pierce_at_rest,
+    laser.laser_at_rest,
+    laser.line_energy,
 )
 """Checks that need the tool's position at every tick."""
 
@@ -50,6 +56,11 @@ OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     path.deviation_between,
     path.uncut,
     path.cut_length,
+    overlap.cut_again,
+    parts.part_size,
+    parts.part_edge,
+    parts.pierce_outside,
+    contours.closed,
     contours.holes_first,
     contours.contours_last,
 )

@@ -1,0 +1,62 @@
+"""The check that no stretch is cut again."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from deltacam.model import Array, Check, IntArray
+from deltacam.verification.checks.measure import at_tick
+from deltacam.verification.comparison import Comparison
+
+LONGEST: Final = 1.0e-3
+"""Length that may be cut again, m: less cannot be told from the ends of cuts."""
+
+_SPACING: Final = 0.1e-3  # m, of samples along a way
+_RADIUS: Final = 0.5e-3  # m, of the circle in which the lengths of way and drawing are compared
+_AGAIN: Final = 0.6  # of the circle's width: so much more way than drawn is a second pass
+
+
+def cut_again(comparison: Comparison) -> Check:
+    """How much of the way with the laser on runs where it has been before, and the drawing has nothing for it.
+
+    Around every 0.1 mm of way the length of all ways is compared with that of all kerf paths: two sides of a narrow web
+    or of a sharp corner are near each other in both.
+    """
+    evidence, name, limit = comparison.evidence, "material cut twice", LONGEST * 1e3
+    runs = [run for run in evidence.runs if run.end > run.first]
+    if not runs:
+        return Check(name, True, 0.0, limit, "mm")
+    found = [_evenly(evidence.sheet[run.first : run.end + 1]) for run in runs]
+    samples = np.concatenate([points for points, _ in found])
+    ticks = np.concatenate([run.first + steps for run, (_, steps) in zip(runs, found, strict=True)])
+    rings = [
+        np.vstack([ring, ring[:1]]) if target.contour.curve.closed else ring
+        for target in comparison.targets
+        for ring in target.rings
+    ]
+    drawn = np.concatenate([np.empty((0, 2)), *(_evenly(ring)[0] for ring in rings)])
+    once = 2.0 * _RADIUS / _SPACING
+    again = np.flatnonzero(_near(samples, samples) > np.maximum(_near(samples, drawn), once) + _AGAIN * once)
+    # Both passes are counted where they lie on each other, so that half of it is what was cut again.
+    length, tick = len(again) * _SPACING * 1e3 / 2.0, int(ticks[again[-1]]) if len(again) else None
+    return at_tick(evidence, name, length <= limit, length, limit, "mm", tick=tick)
+
+
+def _near(places: Array, samples: Array) -> Array:
+    """How many of the ``samples`` (M, 2) are within `_RADIUS` of each of the ``places`` (N, 2): (N,)."""
+    if not len(samples):
+        return np.zeros(len(places))
+    return np.asarray(cKDTree(samples).query_ball_point(places, _RADIUS, return_length=True), dtype=np.float64)
+
+
+def _evenly(line: Array) -> tuple[Array, IntArray]:
+    """Points along a polyline (K, 2) m, about `_SPACING` apart, and the step of the line that each is on."""
+    steps = np.hypot(*np.diff(line, axis=0).T)
+    ends = np.concatenate([[0.0], np.cumsum(steps)])
+    count = max(round(ends[-1] / _SPACING), 1)
+    at = (np.arange(count) + 0.5) * ends[-1] / count
+    points = np.stack([np.interp(at, ends, line[:, 0]), np.interp(at, ends, line[:, 1])], axis=1)
+    return points, np.searchsorted(ends, at, side="right") - 1

@@ -1,0 +1,82 @@
+"""Checks of what is left when the beam has passed: the size and the edge of every part, and where it was pierced."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from shapely import Polygon
+
+from deltacam.model import Array, BlockKind, Check, IntArray, Size
+from deltacam.verification.checks.measure import MICROMETRE, at_contour, at_most
+from deltacam.verification.comparison import Comparison
+from deltacam.verification.evidence import KINDS
+from deltacam.verification.kerf_path import ACCURACY, flattened
+
+
+def part_size(comparison: Comparison) -> Check:
+    """The area of every part and hole, as an even shift of its edge."""
+    return _worst(comparison, "part size", [size.offset for size in comparison.sizes])
+
+
+def part_edge(comparison: Comparison) -> Check:
+    """The edge that the beam leaves of every part and hole, at its worst point."""
+    return _worst(comparison, "part edge", [size.edge for size in comparison.sizes])
+
+
+def pierce_outside(comparison: Comparison) -> Check:
+    """No pierce burns into a finished part: it is half a kerf away from all of them, to the tolerance.
+
+    The pierces of open lines are not meant: they lie in the part that they cut into.
+    """
+    evidence = comparison.evidence
+    process, starts, parts = evidence.program.process, _pierces(comparison), finished_parts(comparison)
+    points = shapely.points(evidence.sheet[starts])
+    which, part = shapely.STRtree(parts).query(points, predicate="dwithin", distance=process.kerf)
+    near = np.array(parts, dtype=object)[part]
+    away = shapely.distance(points[which], near)
+    inside = shapely.distance(points[which], shapely.boundary(near))
+    depth = process.kerf / 2.0 - np.where(away > 0.0, away, -inside)
+    limit = (process.tolerance + ACCURACY) * 1e6
+    return at_most(evidence, "pierce outside the part", depth * 1e6, limit, "um too near", ticks=starts[which])
+
+
+def finished_parts(comparison: Comparison) -> list[Polygon]:
+    """What is to stay of the sheet: every outline that is cut, without the holes directly in it."""
+    cut = {contour.number: contour for contour in comparison.drawing.contours if contour.has_kerf}
+    lines = {number: line for number, contour in cut.items() if len(line := flattened(contour)) > 2}
+    holes: dict[int, list[Array]] = {}
+    for number, line in lines.items():
+        parent = cut[number].parent
+        if cut[number].is_hole and parent is not None:
+            holes.setdefault(parent, []).append(line)
+    return [Polygon(line, holes.get(number)) for number, line in lines.items() if not cut[number].is_hole]
+
+
+def _pierces(comparison: Comparison) -> IntArray:
+    """The first tick of every pierce, but those of lines that are cut without a kerf beside them."""
+    evidence = comparison.evidence
+    lines = {contour.number for contour in comparison.drawing.contours if not contour.has_kerf}
+    piercing = evidence.kind == KINDS.index(BlockKind.PIERCE)
+    starts = np.flatnonzero(piercing & (np.diff(evidence.program.block, prepend=-1) != 0))
+    return np.array([row for row in starts.tolist() if evidence.block_of(row).contour not in lines], dtype=np.int64)
+
+
+def _worst(comparison: Comparison, name: str, values: list[float]) -> Check:
+    """The check that none of the ``values`` of all sizes, m, is beyond the tolerances.
+
+    What the reader lost of the drawing counts as well.
+    """
+    process, lost = comparison.evidence.program.process, comparison.drawing.conversion_error
+    limit = (process.tolerance + process.chord_tolerance + MICROMETRE) * 1e6
+    if not values:
+        return Check(name, True, limit=limit, unit="um")
+    row = int(np.argmax(values))
+    worst, size = (values[row] + lost) * 1e6, comparison.sizes[row]
+    contour = next(one for one in comparison.drawing.contours if one.number == size.contour)
+    check = Check(name, worst <= limit, worst, limit, "um", where=_in_words(contour.where, size), place=size.place)
+    return at_contour(check, contour)
+
+
+def _in_words(where: str, size: Size) -> str:
+    x, y = (f"{1e3 * value:.3f}" for value in size.place)
+    return f"{where}: {1e6 * size.area:.3f} of {1e6 * size.drawn:.3f} mm2, worst at x {x} y {y} mm"

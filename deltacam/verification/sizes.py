@@ -1,0 +1,88 @@
+"""What is left of every contour when the beam has passed: the kerf, swept along the way of the tool."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import shapely
+from scipy.spatial import cKDTree
+from shapely import LineString, MultiPolygon, Polygon
+
+from deltacam.model import Array, Contour, Size
+from deltacam.verification.kerf_path import flattened, quarter_sides, sharp_corners
+from deltacam.verification.near import Lines
+
+_SIMPLER: Final = 0.2e-6  # m; how far a way may be off so that it needs fewer points
+_SHARPEST: Final = np.radians(170.0)  # a sharper corner of an edge is taken for this one
+_REACH: Final = 5.0  # how far a corner shifts an edge, in multiples of what its sides are shifted
+
+
+def size(contour: Contour, rings: Sequence[Array], ways: Sequence[Array], *, kerf: float) -> Size:
+    """The part or hole that is left of a closed contour, beside what an exact cut would leave.
+
+    An exact cut is the same with the exact path, so that a corner which no beam of this kerf reaches does not count.
+
+    Args:
+        contour: of the drawing, cut with a kerf.
+        rings: its kerf path, (K, 2) m each, the first point not repeated; at least one.
+        ways: of the tool, (K, 2) m each, from start to end; at least one.
+        kerf: width of the cut, m, >= 0.
+    """
+    drawn = Polygon(flattened(contour))
+    ideal = _left([np.vstack([ring, ring[:1]]) for ring in rings], kerf, contour, drawn)
+    left = _left(ways, kerf, contour, drawn)
+    offset = abs(left.area - ideal.area) / ideal.length if ideal.length else 0.0
+    edge, place = _largest_gap(ideal, left)
+    return Size(contour.number, drawn.area, left.area, offset, edge, place)
+
+
+def _left(ways: Sequence[Array], kerf: float, contour: Contour, drawn: Polygon) -> Polygon | MultiPolygon:
+    """What the cuts along ``ways`` leave inside an outline, or open in the material of a hole."""
+    lines = [shapely.simplify(LineString(way), _SIMPLER, preserve_topology=False) for way in ways if len(way) > 1]
+    if not lines:
+        return Polygon()
+    if kerf == 0.0:
+        closed = [Polygon(line.coords) for line in lines if len(line.coords) > 3]
+        return shapely.union_all([shapely.make_valid(one) for one in closed])
+    half = kerf / 2.0
+    swept = shapely.union_all(shapely.buffer(lines, half, quad_segs=quarter_sides(half)))
+    ribbons = list(swept.geoms) if isinstance(swept, MultiPolygon) else [swept]
+    if contour.is_hole:
+        return shapely.union_all([Polygon(ribbon.exterior) for ribbon in ribbons])
+    if len(ribbons) == 1 and len(ribbons[0].interiors) == 1:
+        return Polygon(ribbons[0].interiors[0])
+    enclosed = shapely.union_all([Polygon(ribbon.exterior) for ribbon in ribbons]).difference(swept)
+    pieces = np.array(shapely.get_parts(enclosed))
+    return shapely.union_all(pieces[shapely.contains(drawn, shapely.point_on_surface(pieces))])
+
+
+def _largest_gap(ideal: Polygon | MultiPolygon, left: Polygon | MultiPolygon) -> tuple[float, tuple[float, float]]:
+    """The largest distance between both edges either way, m, and where it is; a sharp corner counts less.
+
+    A side that is shifted by d moves the tip of a corner by d over the sine of half the angle between its sides.
+    """
+    edges, found = _edges(ideal), _edges(left)
+    if not edges or not found:
+        x, y = (edges or found or [np.zeros((1, 2))])[0][0].tolist()
+        return float(max(np.sqrt(ideal.area), np.sqrt(left.area))), (x, y)
+    exact, real = Lines(edges, closed=True), Lines(found, closed=True)
+    points = np.concatenate([real.samples, exact.samples])
+    gaps = np.concatenate(
+        [exact.distance(real.samples, exact_above=_SIMPLER), real.distance(exact.samples, exact_above=_SIMPLER)]
+    )
+    corners = [sharp_corners(edge, closed=True) for edge in edges]
+    tips, turns = np.concatenate([tip for tip, _ in corners]), np.concatenate([turn for _, turn in corners])
+    if len(tips):
+        away, tip = cKDTree(tips).query(points)
+        share = np.cos(np.minimum(turns[tip], _SHARPEST) / 2.0)
+        gaps = np.where(away <= _REACH * gaps, gaps * share, gaps)
+    worst = int(np.argmax(gaps))
+    return float(gaps[worst]), (float(points[worst, 0]), float(points[worst, 1]))
+
+
+def _edges(shape: Polygon | MultiPolygon) -> list[Array]:
+    """All rings of a shape, (K, 2) m each, the first point not repeated."""
+    polygons = [part for part in shapely.get_parts(shape) if isinstance(part, Polygon) and not part.is_empty]
+    return [np.asarray(ring.coords)[:-1] for part in polygons for ring in (part.exterior, *part.interiors)]
