@@ -70,7 +70,7 @@ class Lines:
         Returns:
             (N,) m.
         """
-        _, nearest = self._tree.query(points)
+        _, nearest = self._tree.query(points, workers=-1)
         extra = nearest >= len(self._starts)
         piece = np.where(extra, self._extra[np.where(extra, nearest - len(self._starts), 0)], nearest)
         found = np.minimum(self._to_piece(points, piece), self._to_piece(points, self._before[piece]))

@@ -39,7 +39,9 @@ def cut_again(comparison: Comparison) -> Check:
     ]
     drawn = np.concatenate([np.empty((0, 2)), *(_evenly(ring)[0] for ring in rings)])
     once = 2.0 * _RADIUS / _SPACING
-    again = np.flatnonzero(_near(samples, samples) > np.maximum(_near(samples, drawn), once) + _AGAIN * once)
+    passed = _near(samples, samples) - _AGAIN * once
+    again = np.flatnonzero(passed > once)
+    again = again[passed[again] > _near(samples[again], drawn)]
     # Both passes are counted where they lie on each other, so that half of it is what was cut again.
     length, tick = len(again) * _SPACING * 1e3 / 2.0, int(ticks[again[-1]]) if len(again) else None
     return at_tick(evidence, name, length <= limit, length, limit, "mm", tick=tick)
@@ -49,7 +51,9 @@ def _near(places: Array, samples: Array) -> Array:
     """How many of the ``samples`` (M, 2) are within `_RADIUS` of each of the ``places`` (N, 2): (N,)."""
     if not len(samples):
         return np.zeros(len(places))
-    return np.asarray(cKDTree(samples).query_ball_point(places, _RADIUS, return_length=True), dtype=np.float64)
+    return np.asarray(
+        cKDTree(samples).query_ball_point(places, _RADIUS, return_length=True, workers=-1), dtype=np.float64
+    )
 
 
 def _evenly(line: Array) -> tuple[Array, IntArray]:

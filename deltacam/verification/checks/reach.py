@@ -19,7 +19,7 @@ def poses(evidence: Evidence) -> Check:
 
 def reach_margin(evidence: Evidence) -> Check:
     """No arm is at the edge of its reach, at ticks and between them; the margin is a share of the upper arm."""
-    margin, ticks = _everywhere(evidence, lambda points: -evidence.robot.reach_margin(points).min(axis=1))
+    margin, ticks = _everywhere(evidence, lambda points: -evidence.robot.reach_margin(points).min(axis=1), 0.02)
     row = int(np.argmax(margin))
     worst = -float(margin[row])
     return at_tick(evidence, "reach margin (at least)", worst > 0.0, worst, 0.0, tick=int(ticks[row]))
@@ -33,22 +33,33 @@ def pressure_angle(evidence: Evidence) -> Check:
         return np.asarray(np.degrees(np.maximum(mu1, mu2).max(axis=1)))
 
     limit = float(np.degrees(evidence.robot.workspace.max_pressure_angle)) + ROUNDING_DEG
-    angles, ticks = _everywhere(evidence, largest)
+    angles, ticks = _everywhere(evidence, largest, 1.0)
     return at_most(evidence, "pressure angle", angles, limit, "deg", ticks=ticks)
 
 
 def forearm_swing(evidence: Evidence) -> Check:
     """How far the forearms lean out of their arms' planes; where the robot gives no limit, 90 degrees."""
-    swing, ticks = _everywhere(evidence, lambda points: np.degrees(evidence.robot.forearm_swing(points).max(axis=1)))
+
+    def largest(points: Array) -> Array:
+        return np.asarray(np.degrees(evidence.robot.forearm_swing(points).max(axis=1)))
+
+    swing, ticks = _everywhere(evidence, largest, 1.0)
     stated = evidence.robot.workspace.max_forearm_swing
     limit = 90.0 if stated is None else float(np.degrees(stated))
     return at_most(evidence, "forearm swing", swing, limit + ROUNDING_DEG, "deg", ticks=ticks)
 
 
-def _everywhere(evidence: Evidence, measure: Callable[[Array], Array]) -> tuple[Array, IntArray]:
-    """``measure`` at every tick and half-way to the next one, and the ticks: (2 N - 1,) each."""
-    values = [in_chunks(measure, evidence.tool), in_chunks(measure, evidence.between)]
-    return np.concatenate(values), np.concatenate([np.arange(len(one)) for one in values])
+def _everywhere(evidence: Evidence, measure: Callable[[Array], Array], near: float) -> tuple[Array, IntArray]:
+    """``measure`` at every tick, and half-way to the next one where it may be the worst: values and their ticks.
+
+    Between two ticks, some millimetres, it changes by far less than ``near``: where it is further from the worst at
+    both of them, it is not the worst between them either.
+    """
+    values = in_chunks(measure, evidence.tool)
+    high = values >= values.max() - near
+    rows = np.flatnonzero(high[:-1] | high[1:])
+    between = in_chunks(measure, evidence.between[rows])
+    return np.concatenate([values, between]), np.concatenate([np.arange(len(values)), rows])
 
 
 def sheet_plane(evidence: Evidence) -> Check:
