@@ -179,7 +179,10 @@ class Bench:
     def shifted_outwards(self, program: Program, distance: float) -> Program:
         """The program with the middle setpoint of the cut of contour 2, a circle, moved along its radius."""
         block = next(b for b in program.blocks if b.kind is BlockKind.CUT and b.contour == 2)
-        row = (block.first + block.last) // 2
+        return self.moved_along_the_radius(program, (block.first + block.last) // 2, distance)
+
+    def moved_along_the_radius(self, program: Program, row: int, distance: float) -> Program:
+        """The program with one setpoint moved away from the centre of contour 2."""
         arm = self._to_sheet(self.robot.forward(program.q[[row]])[:, :2])[0] + np.array([0.015, 0.0])
         dx, dy = self._turn() @ arm * distance / np.hypot(*arm)
         return self.shifted(program, row, dx, dy)

@@ -279,6 +279,17 @@ ELSEWHERE = {
     "forearm swing",
     "robot",
     "contours cut last",
+    "joint speed between ticks",
+    "joint acceleration between ticks",
+    "sheet plane between ticks",
+    "sheet area between ticks",
+    "laser on at rest",
+    "energy per mm",
+    "material cut twice",
+    "part size",
+    "part edge",
+    "pierce outside the part",
+    "gap at the end of a cut",
 }
 
 
