@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     from deltacam.cutting.process import load_process
     from deltacam.drawing.reader import read_drawing
     from deltacam.errors import DeltacamError
+    from deltacam.examine import verify
     from deltacam.model import Report
-    from deltacam.pipeline import plan, verify
+    from deltacam.pipeline import plan
     from deltacam.program.formats import read_program, write_program
     from deltacam.program.program import Program
     from deltacam.robot.reader import load_robot
@@ -43,7 +44,7 @@ _HOMES: Final = {
     "plan": "deltacam.pipeline",
     "read_drawing": "deltacam.drawing.reader",
     "read_program": "deltacam.program.formats",
-    "verify": "deltacam.pipeline",
+    "verify": "deltacam.examine",
     "write_program": "deltacam.program.formats",
 }
 

@@ -33,7 +33,6 @@ from deltacam.model import (
 from deltacam.motion import setpoints
 from deltacam.program import csv
 from deltacam.program.atomic import replace_when_done, write_whole
-from deltacam.program.formats import read_program
 from deltacam.program.outputs import Outputs, make_folder
 from deltacam.program.program import DrawingRef, Program
 from deltacam.report import html, listing
@@ -152,59 +151,6 @@ def plan_to_folder(
                 raise ProgramError("the file system did not keep what was written", where=str(outputs.program))
     progress("report", 1, 1)
     return planned, outputs
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Verified:
-    """A program that was checked.
-
-    Attributes:
-        program: as it was read.
-        report: what was found.
-        drawing: that it was compared with, if any.
-        robot: that it was checked against.
-    """
-
-    program: Program
-    report: Report
-    drawing: Drawing | None
-    robot: Robot
-
-
-def verify(
-    program: Program | str | Path, *, drawing: str | Path | None = None, robot: Robot | str | Path | None = None
-) -> Report:
-    """Check a program against the robot it was made for, and against a drawing where one is given.
-
-    Args:
-        program: a program, or the path of a program file.
-        drawing: path of the DXF file that it should cut, or of a folder that holds a file of the name in the program.
-        robot: the robot that it must be for, where that is not simply what the program says.
-
-    Raises:
-        DeltacamError: a file cannot be read at all; what is wrong with a readable program is in the report.
-    """
-    return examine(program, drawing=drawing, robot=robot).report
-
-
-def examine(
-    program: Program | str | Path, *, drawing: str | Path | None = None, robot: Robot | str | Path | None = None
-) -> Verified:
-    """As `verify`, with what was read on the way.
-
-    Raises:
-        DeltacamError: as `verify`.
-    """
-    program = program if isinstance(program, Program) else read_program(program)
-    if robot is not None and not isinstance(robot, Robot):
-        robot = load_robot(robot)
-    part = None
-    if drawing is not None:
-        path = Path(drawing) / program.drawing.file if Path(drawing).is_dir() else drawing
-        scale = program.drawing.metres_per_unit
-        part = read_drawing(path, metres_per_unit=scale, selection=program.selection)
-    report = verification.verify(program, drawing=part, robot=robot)
-    return Verified(program, report, part, robot or program.robot)
 
 
 class _How(NamedTuple):

@@ -24,6 +24,7 @@ MAY_IMPORT = {
     "verification": {"errors", "units", "model", "geometry", "robot", "drawing", "program"},
     "report": {"errors", "plain", "units", "model", "geometry", "robot", "program", "verification"},
     "inspection": {"errors", "plain", "units", "model", "geometry"},
+    "examine": {"errors", "model", "robot", "drawing", "cutting", "program", "verification"},
     "pipeline": {
         "errors",
         "units",

@@ -193,7 +193,7 @@ def test_every_check_has_its_row() -> None:
     page = (DOCS / "explanation" / "verification.md").read_text()
     checks = [check.name for check in plan(ROOT / "samples" / "bracket.dxf").report.checks]
     rows = re.findall(r"^\| ([^|]+?) \| ", page.partition("## What is checked")[2], flags=re.MULTILINE)
-    assert sorted(rows) == sorted(["check", *checks])
+    assert sorted(rows) == sorted(["check", "process", *checks])
 
 
 def test_the_constants_are_those_of_the_code() -> None:

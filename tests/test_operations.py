@@ -8,8 +8,9 @@ import pytest
 
 from deltacam.cutting.process import load_process
 from deltacam.errors import DrawingError, ProcessError
+from deltacam.examine import verify
 from deltacam.model import Mode, Operation, Process, Rule, Selection
-from deltacam.pipeline import plan, plan_to_folder, verify
+from deltacam.pipeline import plan, plan_to_folder
 
 
 @pytest.fixture(scope="module")

@@ -13,9 +13,10 @@ import pytest
 import shapely
 
 from deltacam.errors import DeltacamError, DrawingError, InfeasibleError, ProcessError, ProgramError, RobotError
+from deltacam.examine import verify
 from deltacam.geometry import curve as curves
 from deltacam.model import BlockKind, Mode
-from deltacam.pipeline import Outputs, Planned, plan, plan_to_folder, verify
+from deltacam.pipeline import Outputs, Planned, plan, plan_to_folder
 from deltacam.program.formats import read_program
 from deltacam.report.text import to_text
 

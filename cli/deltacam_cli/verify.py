@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ from deltacam.errors import DeltacamError
 from deltacam_cli.main import EXIT_FAILED, EXIT_INPUT, LONGEST_MESSAGE, refused, show_json
 
 if TYPE_CHECKING:
-    from deltacam.pipeline import Verified
+    from deltacam.examine import Verified
     from deltacam.verification.difference import Difference
 
 PATH = click.Path(path_type=Path)
@@ -21,6 +22,7 @@ PATH = click.Path(path_type=Path)
 @click.argument("programs", metavar="PROGRAM...", nargs=-1, required=True, type=PATH)
 @click.option("--drawing", type=PATH, help="Also check the cut against this DXF file, or that of its name in a folder.")
 @click.option("--robot", help="Also check that the program is for this robot: a built-in name or a file.")
+@click.option("--process", help="Also check that it cuts like this process: a built-in name or a file.")
 @click.option("--against", metavar="PROGRAM", type=PATH, help="Also show what is different from this older program.")
 @click.option("--strict", is_flag=True, help="Fail on warnings too, and where a check could not be made.")
 @click.option("--checks", "every_check", is_flag=True, help="List every check, also those that passed.")
@@ -31,6 +33,7 @@ def command(
     *,
     drawing: Path | None,
     robot: str | None,
+    process: str | None,
     against: Path | None,
     strict: bool,
     every_check: bool,
@@ -46,17 +49,18 @@ def command(
     deltacam verify out/*.program.csv --drawing parts --strict
     deltacam verify new.program.csv --against old.program.csv
     """
-    from deltacam.pipeline import examine
+    from deltacam.examine import examine
 
     several = len(programs) > 1
     if several and against is not None:
         raise click.UsageError("--against compares one program with one other")
+    given: dict[str, Any] = {"drawing": drawing, "robot": robot, "process": process}
     results = []
     for path in programs:
         try:
-            verified = examine(path, drawing=drawing, robot=robot)
+            verified = examine(path, **given)
             page = None if html is None else _write_page(verified, _page(html, path, several=several))
-            different = None if against is None else _difference(verified, against, drawing, robot)
+            different = None if against is None else _difference(verified, against, given)
         except DeltacamError as problem:
             if not several:
                 raise
@@ -90,12 +94,12 @@ def _write_page(verified: Verified, path: Path) -> Path:
     return path
 
 
-def _difference(verified: Verified, against: Path, drawing: Path | None, robot: str | None) -> Difference:
+def _difference(verified: Verified, against: Path, given: Mapping[str, Any]) -> Difference:
     """From the older program to the one that is verified."""
-    from deltacam.pipeline import examine
+    from deltacam.examine import examine
     from deltacam.verification.difference import difference
 
-    older = examine(against, drawing=drawing, robot=robot)
+    older = examine(against, **given)
     return difference((older.program, verified.program), (older.report, verified.report))
 
 

@@ -11,6 +11,7 @@ from deltacam.plain import plain
 from deltacam.report.held_back import in_words
 
 _WIDEST_PLACE: Final = 100  # characters
+_LONGEST_FINDING: Final = 400
 _MOST_FINDINGS: Final = 8
 _ROUNDING: Final = 1e-3  # um
 _OF_THE_CUT: Final = {
@@ -39,7 +40,7 @@ def to_text(report: Report, *, every_check: bool = False) -> str:
     for finding in report.findings[:_MOST_FINDINGS]:
         place = f" ({plain(finding.where)})" if finding.where else ""
         hint = f"; {plain(finding.hint, longest=_WIDEST_PLACE)}" if finding.hint else ""
-        lines.append(f"note: {plain(finding.what, longest=2 * _WIDEST_PLACE)}{place}{hint}")
+        lines.append(f"note: {plain(finding.what, longest=_LONGEST_FINDING)}{place}{hint}")
     if len(report.findings) > _MOST_FINDINGS:
         lines.append(f"note: and {len(report.findings) - _MOST_FINDINGS} more, in the JSON report")
     return "\n".join(lines) + "\n"

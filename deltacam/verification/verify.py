@@ -5,7 +5,10 @@ Nothing of the planner is used here: not its paths, not its time law, not its ke
 
 from __future__ import annotations
 
-from deltacam.model import UNCHECKED, Drawing, Finding, Mode, Report, Size
+from dataclasses import replace
+from typing import Final
+
+from deltacam.model import UNCHECKED, Drawing, Finding, Mode, Process, Report, Size
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
 from deltacam.verification.checks import file
@@ -15,20 +18,42 @@ from deltacam.verification.comparison import Comparison, compare
 from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.summary import summarize
 
+CONTOUR_CHECKS: Final = (
+    "drawing",
+    "cuts of drawn contours only",
+    "every contour cut once",
+    "deviation at ticks",
+    "deviation between ticks",
+    "uncut length",
+    "cut length",
+    "material cut twice",
+    "part size",
+    "part edge",
+    "pierce outside the part",
+    "gap at the end of a cut",
+    "inner contours first",
+    "contours cut last",
+)
+"""The names of the checks that need the drawing, to say so where there is none."""
 
-def verify(program: Program, *, drawing: Drawing | None, robot: Robot | None = None) -> Report:
+
+def verify(
+    program: Program, *, drawing: Drawing | None, robot: Robot | None = None, process: Process | None = None
+) -> Report:
     """Check a program against its robot, its process and its drawing.
 
     Args:
         program: as read from a file, or new.
         drawing: what it should cut; None leaves the contours unchecked, which the report says.
         robot: the machine that it will run on; None takes the one in the program.
+        process: how the material is to be cut; None takes what is in the program.
 
     Returns:
         every check with its worst value, limit, tick and place. The findings say which checks were not made.
     """
-    evidence = gather(program, robot or program.robot)
+    evidence = gather(replace(program, process=process or program.process), robot or program.robot)
     checks = [check(evidence) for check in OF_SETPOINTS]
+    checks += [file.same_process(program.process, process)] if process else []
     findings = list(drawing.findings) if drawing else []
     other_jerk = file.other_jerk_limit(evidence)
     if other_jerk:
@@ -55,7 +80,7 @@ def _compared(evidence: Evidence, drawing: Drawing | None, findings: list[Findin
         return None
     if drawing is None:
         name = evidence.program.drawing.file
-        what = "not checked without the drawing: deviation, completeness and order of the cuts"
+        what = f"not checked without the drawing: {', '.join(CONTOUR_CHECKS)}"
         findings.append(Finding(what, hint=f"give the drawing: --drawing {name}", kind=UNCHECKED))
         return None
     return compare(evidence, drawing)

@@ -14,7 +14,7 @@ import pytest
 
 import deltacam
 from deltacam.geometry import curve as curves
-from deltacam.model import Block, BlockKind, Mode, Placement
+from deltacam.model import UNCHECKED, Block, BlockKind, Mode, Placement
 from deltacam.program import csv
 from deltacam.program.program import Program
 from deltacam.verification.checks.table import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
@@ -121,11 +121,26 @@ def test_a_given_robot_must_be_the_one_in_the_program(bench: Bench, program: Pro
     assert bench.failed(verify(program, drawing=None, robot=slow)) == {"robot", "tool speed"}
 
 
-def test_without_a_drawing_the_report_says_what_was_not_checked(program: Program) -> None:
+def test_without_a_drawing_the_report_says_what_was_not_checked(bench: Bench, program: Program) -> None:
     report = verify(program, drawing=None)
+    made = {check.name for check in report.checks}
+    all_names = [check.name for check in verify(program, drawing=bench.drawing).checks]
+    missing = next(finding.what for finding in report.findings if finding.kind == UNCHECKED)
+    assert missing == f"not checked without the drawing: {', '.join(name for name in all_names if name not in made)}"
     assert report.passed
     assert len(report.checks) == len(OF_SETPOINTS) + len(OF_POSITIONS)
-    assert [finding for finding in report.findings if "not checked without the drawing" in finding.what]
+
+
+def test_a_given_process_is_the_one_that_counts(bench: Bench, program: Program) -> None:
+    same = verify(program, drawing=bench.drawing, process=replace(program.process, name="the same, renamed"))
+    assert bench.failed(same) == set()
+    assert bench.check(same, "process").passed
+    loose = replace(program, process=replace(program.process, tolerance=1e-3, feed=0.5))
+    moved = bench.shifted_outwards(loose, 30e-6)
+    assert bench.failed(verify(moved, drawing=bench.drawing)) <= {"joint jerk"}
+    strict = verify(moved, drawing=bench.drawing, process=program.process)
+    assert bench.failed(strict) >= {"process", "deviation at ticks"}
+    assert bench.check(strict, "process").where == "feed 0.5 for 0.1, tolerance 0.001 for 2e-05"
 
 
 def test_a_frame_program_is_not_compared_with_the_contours(bench: Bench, program: Program) -> None:

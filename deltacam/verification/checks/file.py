@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
-from deltacam.model import Block, Check, IntArray
+from deltacam.model import Block, Check, IntArray, Process
 from deltacam.program.program import TICK_COLUMN, Program
 from deltacam.robot.robot import Triple
 from deltacam.verification.checks.measure import at_tick
@@ -43,6 +43,20 @@ def robot(evidence: Evidence) -> Check:
     words = other_jerk_limit(evidence)
     differ = f"made for {planned.name}, checked against {given.name}, whose values differ"
     return Check("robot", bool(words), where=words or differ)
+
+
+def same_process(planned: Process, given: Process) -> Check:
+    """The program was made for the process that it is checked against; names, sources and words may differ."""
+    words = ("name", "source", "material", "gas")
+    names = [one.name for one in fields(Process) if one.name not in words]
+    differ = [name for name in names if getattr(planned, name) != getattr(given, name)]
+    shown = (f"{name} {_shown(getattr(planned, name))} for {_shown(getattr(given, name))}" for name in differ)
+    return Check("process", not differ, float(len(differ)), 0.0, "values", where=", ".join(shown))
+
+
+def _shown(value: object) -> str:
+    """A number or a word; rules are too long to be shown."""
+    return f"{value:.6g}" if isinstance(value, float) else "others" if isinstance(value, tuple) else str(value)
 
 
 def other_jerk_limit(evidence: Evidence) -> str:
