@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from deltacam.errors import ProgramError
 from deltacam.model import Block, BlockKind, Mode
-from deltacam.program import csv
+from deltacam.program import contents, csv
 from deltacam.program.formats import FORMATS
 from deltacam.program.program import Program
 
@@ -254,7 +254,7 @@ def test_a_change_of_any_byte_of_the_rows_is_refused_or_reported(program: Progra
 
 
 def test_too_many_rows_are_refused(program: Program, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(csv, "MAX_ROWS", 5)
+    monkeypatch.setattr(contents, "MAX_ROWS", 5)
     assert "5 rows" in refused(written(program)).what
 
 
