@@ -44,6 +44,7 @@ ONLY_IN = {
     "ezdxf": ("deltacam/drawing/",),
     "toppra": ("deltacam/motion/parametrize.py",),
     "click": ("cli/",),
+    "pyarrow": ("deltacam/program/parquet.py",),
     "shapely": ("deltacam/drawing/", "deltacam/cutting/", "deltacam/verification/"),
 }
 """For each library, the only places that may import it."""

@@ -14,7 +14,6 @@ import numpy as np
 from deltacam.errors import ProgramError
 from deltacam.model import Array, IntArray
 from deltacam.program import meta as metas
-from deltacam.program.fields import MAX_WHOLE
 from deltacam.program.program import TICK_COLUMN, Program
 
 VERSION: Final = "1"
@@ -119,11 +118,6 @@ def to_program(meta: metas.Meta, rows: Rows, problems: Iterable[str], *, name: s
         )
     except ValueError as problem:
         raise ProgramError(str(problem), where=name, hint=DAMAGED) from problem
-
-
-def are_whole(values: Array | IntArray) -> bool:
-    """Whether all are whole numbers that a spreadsheet holds exactly."""
-    return bool(((values >= -MAX_WHOLE) & (values <= MAX_WHOLE)).all() and (values == np.floor(values)).all())
 
 
 def _contradictions(meta: metas.Meta, rows: Rows) -> list[str]:

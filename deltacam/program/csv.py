@@ -19,7 +19,7 @@ from deltacam.model import Array, IntArray
 from deltacam.program import contents
 from deltacam.program import meta as metas
 from deltacam.program.contents import DAMAGED, VERSION, Rows
-from deltacam.program.fields import parse_json
+from deltacam.program.fields import MAX_WHOLE, parse_json
 from deltacam.program.program import Program
 from deltacam.program.rows import COLUMNS, HEADER, format_rows
 
@@ -161,13 +161,13 @@ def _parse(chunk: bytes, name: str, first_line: int) -> Array:
         table = np.loadtxt(io.BytesIO(chunk), delimiter=",", comments=None, ndmin=2)
     except ValueError:
         raise _row_problem(chunk, name, first_line) from None
-    if (
-        table.shape != (expected, len(COLUMNS))
-        or not np.isfinite(table).all()
-        or not contents.are_whole(table[:, [0, 5]])
-    ):
+    if table.shape != (expected, len(COLUMNS)) or not np.isfinite(table).all() or not _whole_numbers(table[:, [0, 5]]):
         raise _row_problem(chunk, name, first_line)
     return table
+
+
+def _whole_numbers(values: Array) -> bool:
+    return bool((np.abs(values) <= MAX_WHOLE).all() and (values == np.floor(values)).all())
 
 
 def _row_problem(chunk: bytes, name: str, first_line: int) -> ProgramError:
@@ -182,6 +182,6 @@ def _row_problem(chunk: bytes, name: str, first_line: int) -> ProgramError:
             shown = cell[:40].decode("ascii", "backslashreplace")
             if not _NUMBER.fullmatch(cell) or not np.isfinite(float(cell)):
                 return ProgramError(f"{column} is {shown!r}, which is not a number", where=where, hint=DAMAGED)
-            if column in ("tick", "block") and not contents.are_whole(np.array([float(cell)])):
+            if column in ("tick", "block") and not _whole_numbers(np.array([float(cell)])):
                 return ProgramError(f"{column} is {shown!r}, which is not a whole number", where=where, hint=DAMAGED)
     return ProgramError("the rows cannot be read", where=f"{name}, from line {first_line}", hint=DAMAGED)

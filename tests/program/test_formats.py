@@ -61,7 +61,7 @@ def test_a_program_that_cannot_be_written_leaves_nothing(tmp_path: Path, program
 def test_importing_the_formats_loads_nothing_heavy() -> None:
     code = "import sys, deltacam.program.formats; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-    assert not {"shapely", "scipy", "ezdxf", "toppra", "matplotlib"} & set(loaded)
+    assert not {"shapely", "scipy", "ezdxf", "toppra", "matplotlib", "pyarrow"} & set(loaded)
 
 
 @pytest.mark.parametrize(
