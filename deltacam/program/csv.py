@@ -21,7 +21,7 @@ from deltacam.program import meta as metas
 from deltacam.program.contents import DAMAGED, VERSION, Rows
 from deltacam.program.fields import MAX_WHOLE, parse_json
 from deltacam.program.program import Program
-from deltacam.program.rows import COLUMNS, HEADER, format_rows
+from deltacam.program.rows import COLUMNS, HEADER, format_rows, whole_angles
 
 MAGIC: Final = b"# deltacam-program "
 
@@ -47,7 +47,7 @@ def write(program: Program, stream: BinaryIO) -> None:
     stream.write(_preamble(program, "0" * 64))
     digest = hashlib.sha256(HEADER)
     stream.write(HEADER)
-    for chunk in format_rows(np.arange(len(program.q)), program.q, program.power, program.block):
+    for chunk in format_rows(np.arange(len(program.q)), whole_angles(program.q), program.power, program.block):
         digest.update(chunk)
         stream.write(chunk)
     end = stream.tell()

@@ -12,13 +12,13 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 
 from deltacam.errors import ProgramError
-from deltacam.model import Array, BoolArray
+from deltacam.model import Array, BoolArray, IntArray
 from deltacam.program import contents
 from deltacam.program import meta as metas
 from deltacam.program.contents import DAMAGED, VERSION, Rows
 from deltacam.program.fields import MAX_WHOLE, parse_json
 from deltacam.program.program import MAX_ANGLE, Program
-from deltacam.program.rows import COLUMNS, DECIMALS, hash_rows, round_angles
+from deltacam.program.rows import COLUMNS, DECIMALS, exact_angles, hash_rows, whole_angles
 
 VERSION_KEY: Final = b"deltacam-program"
 META_KEY: Final = b"deltacam-meta"
@@ -44,9 +44,9 @@ def write(program: Program, stream: BinaryIO) -> None:
             repaired; or the format cannot hold a value.
     """
     arrow = _arrow()
-    ticks, q, power = np.arange(len(program.q)), round_angles(program.q), program.power + 0.0  # zero has no sign
-    meta = contents.dump_meta(program, hash_rows(ticks, q, power, program.block))
-    columns = (ticks, *np.ascontiguousarray(q.T), power, program.block)
+    ticks, angles, power = np.arange(len(program.q)), whole_angles(program.q), program.power + 0.0  # zero has no sign
+    meta = contents.dump_meta(program, hash_rows(ticks, angles, power, program.block))
+    columns = (ticks, *exact_angles(np.ascontiguousarray(angles.T)), power, program.block)
     table = arrow.table(list(map(arrow.array, columns)), schema=_schema(arrow))
     options = {
         "compression": "zstd",
@@ -92,8 +92,9 @@ def read(stream: BinaryIO, *, name: str) -> Program:
     q = np.stack(angles, axis=1)
     if np.abs(q).max() > MAX_ANGLE:
         raise ProgramError(f"a joint angle is {np.abs(q).max():.6g} rad; at most {MAX_ANGLE:g} is possible", where=name)
-    rows = Rows(ticks, q, power, block, hash_rows(ticks, q, power, block))
-    return contents.to_program(meta, rows, _decimal_problems(q), name=name, place="row", first=0)
+    whole = whole_angles(q)
+    rows = Rows(ticks, q, power, block, hash_rows(ticks, whole, power, block))
+    return contents.to_program(meta, rows, _decimal_problems(q, whole), name=name, place="row", first=0)
 
 
 def _arrow() -> Any:
@@ -187,7 +188,7 @@ def _wrong(values: Any, *, whole: bool) -> BoolArray:
     return np.asarray((array < -MAX_WHOLE) | (array > MAX_WHOLE) if whole else ~np.isfinite(array))
 
 
-def _decimal_problems(q: Array) -> list[str]:
+def _decimal_problems(q: Array, whole: IntArray) -> list[str]:
     """Names the first row with an angle that the CSV file cannot hold, and that the hash does not see whole."""
-    wrong = np.flatnonzero((round_angles(q) != q).any(axis=1))
+    wrong = np.flatnonzero((exact_angles(whole) != q).any(axis=1))
     return [f"an angle in row {wrong[0]} has more than {DECIMALS} decimals"] if len(wrong) else []

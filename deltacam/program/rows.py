@@ -22,6 +22,7 @@ DECIMALS: Final = 12
 _Cells = npt.NDArray[np.uint8]
 
 _ONE: Final = 10**DECIMALS
+_LAST_DIGIT: Final = 2.0**-52
 _ROWS_PER_CHUNK: Final = 10_000
 _GROUP: Final = 4  # digits that are looked up at a time
 _BASE: Final = 10**_GROUP
@@ -34,30 +35,30 @@ _DIGITS: Final = np.array(
 """The digits of 0 to 9999; then the same with zero bytes for leading zeros."""
 
 
-def format_rows(ticks: IntArray, q: Array, power: Array, block: IntArray) -> Iterator[bytes]:
+def format_rows(ticks: IntArray, angles: IntArray, power: Array, block: IntArray) -> Iterator[bytes]:
     """The rows in chunks, without the line of column names.
 
     Args:
         ticks: (N,).
-        q: joint angles, (N, 3) rad, at most `deltacam.program.program.MAX_ANGLE` in size.
+        angles: (N, 3), joint angles as `whole_angles` gives them.
         power: (N,); written as the shortest text that gives the same number.
         block: (N,).
     """
     levels, which = np.unique(power, return_inverse=True)
     names = _names(levels)
-    for first in range(0, len(q), _ROWS_PER_CHUNK):
+    for first in range(0, len(ticks), _ROWS_PER_CHUNK):
         rows = slice(first, first + _ROWS_PER_CHUNK)
-        angles = whole_angles(q[rows])
-        cells = [_whole(ticks[rows]), *(_decimal(angles[:, i]) for i in range(3)), [names[which[rows]]]]
-        parts = [part for cell in cells for part in (*cell, _column(",", len(angles)))]
-        parts += [*_whole(block[rows]), _column("\n", len(angles))]
+        cells = [_whole(ticks[rows]), *(_decimal(angles[rows, i]) for i in range(3)), [names[which[rows]]]]
+        count = len(block[rows])
+        parts = [part for cell in cells for part in (*cell, _column(",", count))]
+        parts += [*_whole(block[rows]), _column("\n", count)]
         yield np.hstack(parts).tobytes().translate(None, b"\0")
 
 
-def hash_rows(ticks: IntArray, q: Array, power: Array, block: IntArray) -> str:
+def hash_rows(ticks: IntArray, angles: IntArray, power: Array, block: IntArray) -> str:
     """The SHA-256 of the column names and the rows as the CSV file has them, hexadecimal."""
     digest = hashlib.sha256(HEADER)
-    for chunk in format_rows(ticks, q, power, block):
+    for chunk in format_rows(ticks, angles, power, block):
         digest.update(chunk)
     return digest.hexdigest()
 
@@ -66,17 +67,20 @@ def whole_angles(q: Array) -> IntArray:
     """Angles of any shape as whole numbers of 1e-12 rad, rounded as ``"%.12f"`` rounds them.
 
     The product below is off by at most half of its last digit; where that could turn the rounding, the text decides.
+
+    Args:
+        q: rad, at most `deltacam.program.program.MAX_ANGLE` in size.
     """
     scaled = q * float(_ONE)
     whole = np.rint(scaled)
-    doubtful = np.abs(np.abs(scaled - whole) - 0.5) <= np.spacing(np.abs(scaled))
+    doubtful = np.abs(np.abs(scaled - whole) - 0.5) <= _LAST_DIGIT * np.abs(scaled)
     whole[doubtful] = [float(f"{value:.12f}".replace(".", "")) for value in q[doubtful].tolist()]
     return np.asarray(whole, dtype=np.int64)
 
 
-def round_angles(q: Array) -> Array:
-    """Angles rounded to 12 decimals: the numbers that their text gives."""
-    return np.asarray(whole_angles(q) / float(_ONE))
+def exact_angles(angles: IntArray) -> Array:
+    """Angles in rad from whole numbers of 1e-12 rad: the numbers that their text gives."""
+    return np.asarray(angles / float(_ONE))
 
 
 def _names(levels: Array) -> _Cells:

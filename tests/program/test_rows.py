@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deltacam.program.rows import HEADER, format_rows, hash_rows, round_angles, whole_angles
+from deltacam.program.rows import HEADER, exact_angles, format_rows, hash_rows, whole_angles
 
 TIES = st.integers(-(2**23), 2**23).map(lambda odd: odd / 2**13)  # some lie half-way between two texts
 ANGLES = st.one_of(st.floats(-1e3, 1e3), st.floats(-1e-11, 1e-11), TIES)
@@ -24,7 +24,7 @@ def as_python_writes(tick: int, q1: float, q2: float, q3: float, power: float, b
 
 def columns(rows: list[tuple[int, float, float, float, float, int]]) -> tuple[np.ndarray, ...]:
     ticks, *angles, power, block = zip(*rows, strict=True)
-    return np.array(ticks), np.array(angles).T, np.array(power), np.array(block)
+    return np.array(ticks), whole_angles(np.array(angles).T), np.array(power), np.array(block)
 
 
 @given(ROWS)
@@ -40,14 +40,14 @@ def test_many_numbers_are_rounded_as_python_rounds_them() -> None:
     q = np.concatenate([random.uniform(-7.0, 7.0, 20_000), random.uniform(-1e3, 1e3, 20_000), half])
     texts = [f"{value:.12f}" for value in q.tolist()]
     assert whole_angles(q).tolist() == [int(text.replace(".", "")) for text in texts]
-    assert round_angles(q).tolist() == [float(text) for text in texts]
+    assert exact_angles(whole_angles(q)).tolist() == [float(text) for text in texts]
 
 
 @pytest.mark.parametrize("count", [1, 9_999, 10_000, 10_001, 20_001])
 def test_chunks_join_without_a_gap(count: int) -> None:
     ticks = np.arange(count)
     zero = np.zeros(count)
-    text = b"".join(format_rows(ticks, np.zeros((count, 3)), zero, np.zeros(count, dtype=np.int64)))
+    text = b"".join(format_rows(ticks, np.zeros((count, 3), dtype=np.int64), zero, np.zeros(count, dtype=np.int64)))
     lines = text.split(b"\n")
     assert lines[-1] == b""
     assert [int(line.split(b",")[0]) for line in lines[:-1]] == ticks.tolist()
