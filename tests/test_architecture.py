@@ -20,7 +20,7 @@ MAY_IMPORT = {
     "drawing": {"errors", "units", "model", "geometry"},
     "cutting": {"errors", "units", "settings", "model", "geometry", "robot"},
     "motion": {"errors", "units", "model", "geometry", "robot"},
-    "program": {"errors", "units", "model", "robot"},
+    "program": {"errors", "units", "model", "geometry", "robot"},
     "verification": {"errors", "units", "model", "geometry", "robot", "drawing", "program"},
     "report": {"errors", "plain", "units", "model", "geometry", "robot", "program", "verification"},
     "inspection": {"errors", "plain", "units", "model", "geometry"},

@@ -40,7 +40,7 @@ def follow(places: Array, breaks: IntArray, tolerance: float) -> tuple[IntArray,
         Indices into ``places`` (M + 1,), among them the breaks, and the bulge of each piece (M,).
     """
     first, last = breaks[:-1], breaks[1:]
-    done: list[tuple[IntArray, IntArray, Array]] = []
+    done = [(first[:0], last[:0], np.zeros(0))]
     while len(first):
         bulges, good = _try(places, first, last, tolerance)
         done.append((first[good], last[good], bulges[good]))

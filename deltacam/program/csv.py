@@ -7,9 +7,6 @@ be, but is not as deltacam writes it, is listed in `Program.integrity` for the c
 from __future__ import annotations
 
 import hashlib
-import io
-import re
-from collections.abc import Iterator
 from typing import BinaryIO, Final
 
 import numpy as np
@@ -18,17 +15,15 @@ from deltacam.errors import ProgramError
 from deltacam.model import Array, IntArray
 from deltacam.program import contents
 from deltacam.program import meta as metas
-from deltacam.program.contents import DAMAGED, VERSION, Rows
-from deltacam.program.fields import MAX_WHOLE, parse_json
+from deltacam.program.contents import VERSION, Rows
+from deltacam.program.fields import parse_json
+from deltacam.program.lines import parse_lines, whole_lines
 from deltacam.program.program import Program
 from deltacam.program.rows import COLUMNS, HEADER, format_rows, whole_angles
 
 MAGIC: Final = b"# deltacam-program "
 
 _FIRST_ROW: Final = 4  # its line
-_CHUNK: Final = 4 * 2**20  # bytes; no row is longer
-_NUMBER: Final = re.compile(rb"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-_IN_NUMBERS: Final = b"0123456789+-.eE,\r\n"
 _CUT_OFF: Final = "the last line has no end: the file was cut off"
 
 
@@ -121,9 +116,9 @@ def _read_rows(stream: BinaryIO, name: str) -> tuple[Rows, bool]:
     digest = hashlib.sha256(HEADER)
     parts: list[tuple[IntArray, Array, Array, IntArray]] = []
     line, size, last = _FIRST_ROW, 0, b"\n"
-    for chunk in _whole_lines(stream, name):
+    for chunk in whole_lines(stream, name):
         digest.update(chunk)
-        table = _parse(chunk, name, line)
+        table = parse_lines(chunk, name, line, COLUMNS, whole=("tick", "block"))
         line += len(table)
         size += len(chunk)
         last = chunk[-1:]
@@ -136,52 +131,3 @@ def _read_rows(stream: BinaryIO, name: str) -> tuple[Rows, bool]:
         raise ProgramError("the program has no setpoint", where=f"{name}, line {_FIRST_ROW}", hint=hint)
     ticks, q, power, block = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Rows(ticks, q, power, block, digest.hexdigest()), last == b"\n"
-
-
-def _whole_lines(stream: BinaryIO, name: str) -> Iterator[bytes]:
-    """The rest of the stream in chunks that end where a line ends; the last one as it is."""
-    rest = b""
-    while chunk := stream.read(_CHUNK):
-        lines, end, after = (rest + chunk).rpartition(b"\n")
-        if end:
-            yield lines + end
-        rest = after
-        if len(rest) > _CHUNK:
-            raise ProgramError(f"a line is longer than {_CHUNK:,} bytes", where=name)
-    if rest:
-        yield rest
-
-
-def _parse(chunk: bytes, name: str, first_line: int) -> Array:
-    """The numbers of whole lines, (n, 6)."""
-    expected = chunk.count(b"\n") + (not chunk.endswith(b"\n"))
-    if chunk.translate(None, _IN_NUMBERS) or not chunk.strip():  # nan, inf, 1_000, quotes; empty lines
-        raise _row_problem(chunk, name, first_line)
-    try:
-        table = np.loadtxt(io.BytesIO(chunk), delimiter=",", comments=None, ndmin=2)
-    except ValueError:
-        raise _row_problem(chunk, name, first_line) from None
-    if table.shape != (expected, len(COLUMNS)) or not np.isfinite(table).all() or not _whole_numbers(table[:, [0, 5]]):
-        raise _row_problem(chunk, name, first_line)
-    return table
-
-
-def _whole_numbers(values: Array) -> bool:
-    return bool((np.abs(values) <= MAX_WHOLE).all() and (values == np.floor(values)).all())
-
-
-def _row_problem(chunk: bytes, name: str, first_line: int) -> ProgramError:
-    """The error that names the first line of ``chunk`` that is not a row."""
-    lines = chunk.removesuffix(b"\n").split(b"\n")
-    for line, row in enumerate(lines, start=first_line):
-        where = f"{name}, line {line}"
-        cells = row.removesuffix(b"\r").split(b",")
-        if len(cells) != len(COLUMNS):
-            return ProgramError(f"the row has {len(cells)} fields instead of {len(COLUMNS)}", where=where, hint=DAMAGED)
-        for column, cell in zip(COLUMNS, cells, strict=True):
-            shown = cell[:40].decode("ascii", "backslashreplace")
-            if not _NUMBER.fullmatch(cell) or not np.isfinite(float(cell)):
-                return ProgramError(f"{column} is {shown!r}, which is not a number", where=where, hint=DAMAGED)
-            if column in ("tick", "block") and not _whole_numbers(np.array([float(cell)])):
-                return ProgramError(f"{column} is {shown!r}, which is not a whole number", where=where, hint=DAMAGED)
-    return ProgramError("the rows cannot be read", where=f"{name}, from line {first_line}", hint=DAMAGED)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import BinaryIO, Final, Protocol, cast
 
 from deltacam.errors import ProgramError
-from deltacam.program import csv, parquet
+from deltacam.program import csv, gcode, gcode_writer, halstreamer, parquet
 from deltacam.program.atomic import replace_when_done
 from deltacam.program.program import Program
 
@@ -33,12 +33,32 @@ class Format:
     read: _Read
     whole: bool
 
+    @property
+    def ending(self) -> str:
+        """The last part of the suffix, such as .csv."""
+        return "." + self.suffix.rpartition(".")[2]
+
 
 FORMATS: Final[dict[str, Format]] = {
     "csv": Format(".program.csv", csv.write, csv.read, whole=True),
     "parquet": Format(".program.parquet", parquet.write, parquet.read, whole=True),
+    "gcode": Format(".gcode", gcode_writer.write, gcode.read, whole=False),
+    "halstreamer": Format(".halstream", halstreamer.write, halstreamer.read, whole=False),
 }
 """By name. A new format is one line here; the shared tests and `deltacam export` take it up by themselves."""
+
+
+def find_format(path: Path) -> Format | None:
+    """The format that the name of ``path`` stands for, if any."""
+    return next((known for known in FORMATS.values() if path.name.lower().endswith(known.ending)), None)
+
+
+def name_of(path: Path) -> str:
+    """What a file is called without its folder and the ending of its format: plate, of plate.program.csv."""
+    known = find_format(path)
+    if known is not None and path.name.lower().endswith(known.suffix):
+        return path.name[: -len(known.suffix)]
+    return path.stem
 
 
 def format_of(path: Path) -> Format:
@@ -47,9 +67,9 @@ def format_of(path: Path) -> Format:
     Raises:
         ProgramError: none does.
     """
-    for known in FORMATS.values():
-        if path.name.lower().endswith(Path(known.suffix).suffix):
-            return known
+    known = find_format(path)
+    if known is not None:
+        return known
     raise ProgramError("the name is not that of a program file", where=str(path), hint=_names())
 
 

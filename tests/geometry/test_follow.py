@@ -125,3 +125,8 @@ def test_every_place_is_within_the_tolerance_of_its_piece_and_passed_in_order(
         assert max(piece.distance(point) for point in points) <= tolerance * (1.0 + 1e-6) + 1e-10
         along = [piece.project(point) for point in points]
         assert (np.diff(along) >= -2.0 * tolerance - 1e-9).all()
+
+
+def test_one_place_is_no_piece() -> None:
+    knots, bulges = follow(np.zeros((1, 2)), np.array([0]), TOLERANCE)
+    assert (knots.tolist(), bulges.tolist()) == ([0], [])
