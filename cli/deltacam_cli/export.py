@@ -34,7 +34,11 @@ def command(program: Path, name: str, output: Path | None, as_json: bool) -> Non
     known = _format(name)
     path = output or Path(name_of(program) + known.suffix)
     _check_output(path, known, program)
-    write_as(read_program(program), path, known)
+    found = read_program(program)
+    try:
+        write_as(found, path, known)
+    except DeltacamError as problem:
+        raise DeltacamError(problem.what, where=problem.where or str(program), hint=problem.hint) from problem
     if as_json:
         show_json({"files": [str(path)]})
     else:

@@ -35,14 +35,14 @@ class Rows(NamedTuple):
         q: joint angles, (N, 3) rad.
         power: of the laser's rated power, (N,).
         block: index into the blocks, (N,).
-        sha256: of the column names and rows as the CSV file has them, hexadecimal.
+        intact: whether their hash is the one that the file states.
     """
 
     ticks: IntArray
     q: Array
     power: Array
     block: IntArray
-    sha256: str
+    intact: bool
 
 
 def dump_meta(program: Program, sha256: str) -> str:
@@ -122,8 +122,8 @@ def to_program(meta: metas.Meta, rows: Rows, problems: Iterable[str], *, name: s
 
 def _contradictions(meta: metas.Meta, rows: Rows) -> list[str]:
     problems = []
-    if meta.sha256 != rows.sha256:
-        problems.append("the rows are not those that were written: their SHA-256 is not the one in the meta object")
+    if not rows.intact:
+        problems.append("the rows are not those that were written: their SHA-256 is not the one that the file states")
     if meta.rows != len(rows.ticks):
         problems.append(f"the meta object states {meta.rows} rows, the file has {len(rows.ticks)}")
     if meta.rate_hz != meta.robot.controller.rate_hz:

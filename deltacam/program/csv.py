@@ -66,7 +66,7 @@ def read(stream: BinaryIO, *, name: str) -> Program:
     """
     problems = _read_version(stream, name)
     meta, untidy = _read_meta(stream, name)
-    rows, whole = _read_rows(stream, name)
+    rows, whole = _read_rows(stream, name, meta.sha256)
     problems += untidy if whole else [*untidy, _CUT_OFF]
     return contents.to_program(meta, rows, problems, name=name, place="line", first=_FIRST_ROW)
 
@@ -111,7 +111,7 @@ def _line_end_problems(line: bytes, number: int) -> list[str]:
     return [] if tidy else [f"line {number} does not end with a line feed alone"]
 
 
-def _read_rows(stream: BinaryIO, name: str) -> tuple[Rows, bool]:
+def _read_rows(stream: BinaryIO, name: str, sha256: str) -> tuple[Rows, bool]:
     """The rows, and whether the last line has its end."""
     digest = hashlib.sha256(HEADER)
     parts: list[tuple[IntArray, Array, Array, IntArray]] = []
@@ -130,4 +130,4 @@ def _read_rows(stream: BinaryIO, name: str) -> tuple[Rows, bool]:
         hint = "the file was cut off; plan the drawing again"
         raise ProgramError("the program has no setpoint", where=f"{name}, line {_FIRST_ROW}", hint=hint)
     ticks, q, power, block = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return Rows(ticks, q, power, block, digest.hexdigest()), last == b"\n"
+    return Rows(ticks, q, power, block, digest.hexdigest() == sha256), last == b"\n"

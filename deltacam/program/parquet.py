@@ -6,7 +6,9 @@ with some versions they may still be at work when Python ends, which then aborts
 
 from __future__ import annotations
 
+import hashlib
 import os
+from collections.abc import Sequence
 from typing import Any, BinaryIO, Final
 
 import numpy as np
@@ -17,11 +19,12 @@ from deltacam.program import contents
 from deltacam.program import meta as metas
 from deltacam.program.contents import DAMAGED, VERSION, Rows
 from deltacam.program.fields import MAX_WHOLE, parse_json
-from deltacam.program.program import MAX_ANGLE, Program
-from deltacam.program.rows import COLUMNS, DECIMALS, exact_angles, hash_rows, whole_angles
+from deltacam.program.program import Program
+from deltacam.program.rows import COLUMNS, exact_angles, hash_rows, whole_angles
 
 VERSION_KEY: Final = b"deltacam-program"
 META_KEY: Final = b"deltacam-meta"
+HASH_KEY: Final = b"deltacam-rows-sha256"
 
 _MAGIC: Final = b"PAR1"
 _TAIL: Final = 8  # bytes at the end: the length of the footer, and the magic number
@@ -45,8 +48,13 @@ def write(program: Program, stream: BinaryIO) -> None:
     """
     arrow = _arrow()
     ticks, angles, power = np.arange(len(program.q)), whole_angles(program.q), program.power + 0.0  # zero has no sign
-    meta = contents.dump_meta(program, hash_rows(ticks, angles, power, program.block))
-    columns = (ticks, *exact_angles(np.ascontiguousarray(angles.T)), power, program.block)
+    sha256 = hash_rows(ticks, angles, power, program.block)
+    columns = [ticks, *exact_angles(np.ascontiguousarray(angles.T)), power, program.block]
+    metadata = {
+        VERSION_KEY: VERSION,
+        META_KEY: contents.dump_meta(program, sha256),
+        HASH_KEY: _hash_columns(sha256, columns),
+    }
     table = arrow.table(list(map(arrow.array, columns)), schema=_schema(arrow))
     options = {
         "compression": "zstd",
@@ -56,7 +64,7 @@ def write(program: Program, stream: BinaryIO) -> None:
     }
     with arrow.parquet.ParquetWriter(stream, table.schema, **options) as writer:
         writer.write_table(table, row_group_size=_ROWS_PER_GROUP)
-        writer.add_key_value_metadata({VERSION_KEY.decode(): VERSION, META_KEY.decode(): meta})
+        writer.add_key_value_metadata({key.decode(): value for key, value in metadata.items()})
 
 
 def read(stream: BinaryIO, *, name: str) -> Program:
@@ -81,7 +89,8 @@ def read(stream: BinaryIO, *, name: str) -> Program:
             thrift_string_size_limit=_MAX_FOOTER,
             thrift_container_size_limit=_MAX_PARTS,
         )
-        meta = _read_meta(file.metadata.metadata or {}, name)
+        metadata = file.metadata.metadata or {}
+        meta = _read_meta(metadata, name)
         _check_columns(arrow, file, name)
         columns = _read_columns(file, name)
     except (arrow.ArrowException, OSError, ValueError, MemoryError) as problem:
@@ -89,12 +98,9 @@ def read(stream: BinaryIO, *, name: str) -> Program:
         shown = reason.encode("unicode_escape").decode()  # it may hold names from the file
         raise ProgramError(f"the file is not Parquet that can be read: {shown}", where=name, hint=DAMAGED) from problem
     ticks, *angles, power, block = columns
-    q = np.stack(angles, axis=1)
-    if np.abs(q).max() > MAX_ANGLE:
-        raise ProgramError(f"a joint angle is {np.abs(q).max():.6g} rad; at most {MAX_ANGLE:g} is possible", where=name)
-    whole = whole_angles(q)
-    rows = Rows(ticks, q, power, block, hash_rows(ticks, whole, power, block))
-    return contents.to_program(meta, rows, _decimal_problems(q, whole), name=name, place="row", first=0)
+    intact = metadata[HASH_KEY] == _hash_columns(meta.sha256, columns).encode()
+    rows = Rows(ticks, np.stack(angles, axis=1), power, block, intact)
+    return contents.to_program(meta, rows, [], name=name, place="row", first=0)
 
 
 def _arrow() -> Any:
@@ -137,7 +143,7 @@ def _check_footer(stream: BinaryIO, name: str) -> None:
 
 def _read_meta(found: dict[bytes, bytes], name: str) -> metas.Meta:
     where = f"{name}, key-value metadata"
-    for key in (VERSION_KEY, META_KEY):
+    for key in (VERSION_KEY, META_KEY, HASH_KEY):
         if key not in found:
             hint = "give a file that deltacam wrote; other programs drop the metadata when they write it again"
             raise ProgramError(f"not a deltacam program: {key.decode()} is missing", where=where, hint=hint)
@@ -188,7 +194,12 @@ def _wrong(values: Any, *, whole: bool) -> BoolArray:
     return np.asarray((array < -MAX_WHOLE) | (array > MAX_WHOLE) if whole else ~np.isfinite(array))
 
 
-def _decimal_problems(q: Array, whole: IntArray) -> list[str]:
-    """Names the first row with an angle that the CSV file cannot hold, and that the hash does not see whole."""
-    wrong = np.flatnonzero((exact_angles(whole) != q).any(axis=1))
-    return [f"an angle in row {wrong[0]} has more than {DECIMALS} decimals"] if len(wrong) else []
+def _hash_columns(sha256: str, columns: Sequence[Array | IntArray]) -> str:
+    """The SHA-256 of the text ``sha256`` and then of the columns as numbers of 8 bytes, hexadecimal.
+
+    To check this needs no text of the rows, which is what takes longest; and it stands for the hash of the text, too.
+    """
+    digest = hashlib.sha256(sha256.encode("utf-8", "backslashreplace"))
+    for column in columns:
+        digest.update(np.ascontiguousarray(column, dtype=column.dtype.newbyteorder("<")).data)
+    return digest.hexdigest()

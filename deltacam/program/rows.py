@@ -1,4 +1,4 @@
-"""The rows of a program as text, the same for every format: the CSV file holds it, and the hash is over it.
+"""The rows of a program as text: the CSV file holds it, and the hash in the meta object of every format is over it.
 
 Numbers are written by table, many at a time. The result is that of ``"%d,%.12f,%.12f,%.12f,%s,%d"`` for every row.
 """

@@ -65,7 +65,10 @@ def test_a_damaged_program_is_refused(
     assert read_program(path).integrity
     code, shown, error = run(monkeypatch, capsys, "out/plate.program.csv", "--to", "parquet")
     assert (code, shown) == (2, "")
-    assert "a damaged program is not written: the rows are not those that were written" in error
+    assert (
+        "error: out/plate.program.csv: a damaged program is not written: the rows are not those that were written"
+        in error
+    )
     assert "hint: plan the drawing again" in error
     assert [entry.name for entry in folder.iterdir()] == ["out"]
 

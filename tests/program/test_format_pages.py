@@ -98,7 +98,7 @@ def test_the_page_names_every_key() -> None:
 
 def test_the_page_of_parquet_names_every_column_and_key() -> None:
     page = PAGES["parquet"].read_text(encoding="utf-8")
-    assert all(f"`{name}`" in page for name in (*COLUMNS, "deltacam-program", "deltacam-meta"))
+    assert all(f"`{name}`" in page for name in (*COLUMNS, "deltacam-program", "deltacam-meta", "deltacam-rows-sha256"))
 
 
 def test_the_example_of_g_code_is_the_beginning_of_that_of_the_test_plate() -> None:

@@ -95,7 +95,7 @@ def test_the_columns_and_the_metadata_are_as_documented(program: Program) -> Non
     assert [(one.name, str(one.type), one.nullable) for one in file.schema_arrow] == [
         (name, kind, False) for name, kind in zip(COLUMNS, kinds, strict=True)
     ]
-    assert set(file.metadata.metadata) == {b"deltacam-program", b"deltacam-meta"}
+    assert set(file.metadata.metadata) == {b"deltacam-program", b"deltacam-meta", b"deltacam-rows-sha256"}
     assert file.metadata.metadata[b"deltacam-program"] == b"1"
     text = io.BytesIO()
     csv.write(program, text)
@@ -110,9 +110,20 @@ def test_the_angles_are_exactly_those_of_the_csv_file(with_rows: Callable[..., P
     assert np.array_equal(read(written(program)).q, csv.read(text, name="a").q)
 
 
+def keys(**values: str | None) -> Change:
+    def edit(_: Columns, metadata: dict[str, str]) -> None:
+        for key, value in values.items():
+            metadata.pop(f"deltacam-{key}")
+            if value is not None:
+                metadata[f"deltacam-{key}"] = value
+
+    return edit
+
+
 DAMAGES: dict[str, tuple[Change, str]] = {
     "an angle changed": (cell("q2_rad", 3, 0.25), "SHA-256"),
-    "an angle changed by less than the text shows": (cell("q1_rad", 0, 0.1 + 2e-13), "row 0 has more than 12 decimals"),
+    "an angle changed by less than the text shows": (cell("q1_rad", 0, 0.1 + 2e-13), "SHA-256"),
+    "another hash of the columns": (keys(**{"rows-sha256": "0" * 64}), "SHA-256"),
     "a power changed": (cell("power", 2, 0.999), "SHA-256"),
     "a block changed": (cell("block", 2, 2), "SHA-256"),
     "a tick changed": (cell("tick", 2, 3), "expected tick 2, found 3 in row 2; 1 of 6"),
@@ -131,18 +142,9 @@ def test_damage_that_can_be_read_is_reported(program: Program, damage: str) -> N
     assert any(message in problem for problem in found.integrity), found.integrity
 
 
-def keys(**values: str | None) -> Change:
-    def edit(_: Columns, metadata: dict[str, str]) -> None:
-        for key, value in values.items():
-            metadata.pop(f"deltacam-{key}")
-            if value is not None:
-                metadata[f"deltacam-{key}"] = value
-
-    return edit
-
-
 REFUSED: dict[str, tuple[Change, str]] = {
     "no meta": (keys(meta=None), "deltacam-meta is missing"),
+    "no hash": (keys(**{"rows-sha256": None}), "deltacam-rows-sha256 is missing"),
     "no version": (keys(program=None), "deltacam-program is missing"),
     "version 2": (keys(program="2"), "format version '2' is not 1"),
     "meta not JSON": (keys(meta="{{"), "not JSON"),
