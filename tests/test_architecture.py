@@ -20,7 +20,7 @@ MAY_IMPORT = {
     "drawing": {"errors", "units", "model", "geometry"},
     "cutting": {"errors", "units", "settings", "model", "geometry", "robot"},
     "motion": {"errors", "units", "model", "geometry", "robot"},
-    "program": {"errors", "units", "model", "robot"},
+    "program": {"errors", "units", "model", "geometry", "robot"},
     "verification": {"errors", "units", "model", "geometry", "robot", "drawing", "program"},
     "report": {"errors", "plain", "units", "model", "geometry", "robot", "program", "verification"},
     "inspection": {"errors", "plain", "units", "model", "geometry"},
@@ -45,6 +45,7 @@ ONLY_IN = {
     "ezdxf": ("deltacam/drawing/",),
     "toppra": ("deltacam/motion/parametrize.py",),
     "click": ("cli/",),
+    "pyarrow": ("deltacam/program/parquet.py",),
     "shapely": ("deltacam/drawing/", "deltacam/cutting/", "deltacam/verification/"),
 }
 """For each library, the only places that may import it."""

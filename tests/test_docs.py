@@ -28,7 +28,8 @@ from deltacam_cli import main as command_line
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = [*(ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")), *sorted(DOCS.rglob("*.md"))]
-FORMAT = DOCS / "reference" / "program-format.md"  # its snippets need pandas, and name a file that is not there
+FORMATS = [DOCS / "reference" / "program-format.md", *(DOCS / "reference" / "formats").glob("*.md")]
+"""Their snippets need pandas and others, and name files that are not there: see tests/program."""
 
 
 class Block(NamedTuple):
@@ -120,7 +121,7 @@ def run_console(block: Block) -> None:
             assert matches(command.expected, shown), f"$ {command.line}\n{shown}"
 
 
-RUN = [page for page in PAGES if page != FORMAT and any(map(is_run, blocks(page)))]
+RUN = [page for page in PAGES if page not in FORMATS and any(map(is_run, blocks(page)))]
 
 
 @pytest.mark.parametrize("page", RUN, ids=name)

@@ -17,6 +17,7 @@ COMMANDS: Final = {
     "inspect": "Show what is in DRAWING, and what plan would make of it.",
     "plan": "Plan DRAWING and verify the program.",
     "verify": "Verify PROGRAM, trusting nothing the planner said.",
+    "export": "Write PROGRAM in another format.",
 }
 """The commands and their short help. A command ``x`` is ``deltacam_cli.x:command``; it is imported when it is used."""
 
@@ -71,6 +72,7 @@ def cli(traceback: bool) -> None:
     deltacam inspect part.dxf               shows what is in the drawing
     deltacam plan part.dxf                  writes part.program.csv and its reports
     deltacam verify part.program.csv        checks it again, independently
+    deltacam export part.program.csv --to gcode
 
     Exit codes: 0 done and every check passed; 1 a check failed; 2 the command line, robot, process or drawing must be
     changed; 3 a fault of deltacam; 130 interrupted.

@@ -78,10 +78,11 @@ def _page(html: Path, program: Path, *, several: bool) -> Path:
     """Where the page of a program goes: in the folder ``html`` where there are several."""
     if not several:
         return html
+    from deltacam.program.formats import name_of
     from deltacam.program.outputs import make_folder
 
     make_folder(html)
-    return html / f"{program.name.split('.program.')[0]}.report.html"
+    return html / f"{name_of(program)}.report.html"
 
 
 def _write_page(verified: Verified, path: Path) -> Path:

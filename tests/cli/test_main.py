@@ -38,7 +38,8 @@ def test_help_loads_nothing_heavy(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["plan", "--help"], ["verify", "--help"], ["inspect", "--help"], ["--version"]]
+    "arguments",
+    [["--help"], ["plan", "--help"], ["verify", "--help"], ["inspect", "--help"], ["export", "--help"], ["--version"]],
 )
 def test_help_and_version_are_on_stdout(tmp_path: Path, arguments: list[str]) -> None:
     run = deltacam(*arguments, folder=tmp_path)

@@ -11,6 +11,7 @@ from deltacam.program.program import DrawingRef, Program
 from deltacam.robot.dimensions import DeltaGeometry
 from deltacam.robot.robot import JointLimits, Robot, ToolRating
 from deltacam.robot.workspace import Workspace
+from tests.bench import Bench
 
 ROBOT = Robot(
     name="bench",
@@ -80,3 +81,9 @@ def with_rows() -> Callable[..., Program]:
         return replace(PROGRAM, q=q, power=power, block=block)
 
     return build
+
+
+@pytest.fixture(scope="session")
+def bench_program(bench: Bench) -> Program:
+    """A valid program of thousands of rows."""
+    return bench.program()

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from deltacam.errors import ProgramError
-from deltacam.program.formats import FORMATS, read_program, write_program
+from deltacam.program.formats import FORMATS, name_of, read_program, write_program
 from deltacam.program.program import Program
 
 
-@pytest.mark.parametrize("name", sorted(FORMATS))
+@pytest.mark.parametrize("name", [name for name, known in FORMATS.items() if known.whole])
 def test_a_program_goes_through_a_file(tmp_path: Path, program: Program, name: str) -> None:
     path = tmp_path / f"part{FORMATS[name].suffix}"
     write_program(program, path)
@@ -43,6 +43,34 @@ def test_a_name_of_no_format_is_refused_with_the_right_one(tmp_path: Path, progr
         read_program(tmp_path / name)
 
 
+@pytest.mark.parametrize("name", [name for name, known in FORMATS.items() if not known.whole])
+def test_a_file_that_holds_only_the_motion_is_no_program(tmp_path: Path, bench_program: Program, name: str) -> None:
+    path = tmp_path / f"part{FORMATS[name].suffix}"
+    write_program(bench_program, path)
+    assert path.stat().st_size > 1000
+    with pytest.raises(ProgramError, match="only the motion") as caught:
+        read_program(path)
+    assert ".program.csv" in caught.value.hint
+
+
+@pytest.mark.parametrize(
+    ("file", "name"),
+    [
+        ("out/plate.program.csv", "plate"),
+        ("Plate.Program.CSV", "Plate"),
+        ("a.b.program.parquet", "a.b"),
+        ("plate.csv", "plate"),
+        ("plate.gcode", "plate"),
+    ],
+)
+def test_the_name_of_a_file_is_without_the_ending_of_its_format(file: str, name: str) -> None:
+    assert name_of(Path(file)) == name
+
+
+def test_every_ending_stands_for_one_format() -> None:
+    assert len({known.ending for known in FORMATS.values()}) == len(FORMATS)
+
+
 def test_a_missing_file_and_a_folder_are_errors(tmp_path: Path) -> None:
     with pytest.raises(ProgramError, match="no such file"):
         read_program(tmp_path / "a.program.csv")
@@ -61,7 +89,7 @@ def test_a_program_that_cannot_be_written_leaves_nothing(tmp_path: Path, program
 def test_importing_the_formats_loads_nothing_heavy() -> None:
     code = "import sys, deltacam.program.formats; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-    assert not {"shapely", "scipy", "ezdxf", "toppra", "matplotlib"} & set(loaded)
+    assert not {"shapely", "scipy", "ezdxf", "toppra", "matplotlib", "pyarrow"} & set(loaded)
 
 
 @pytest.mark.parametrize(
