@@ -153,7 +153,8 @@ def test_a_failed_plan_leaves_no_program_of_an_earlier_run(
     tmp_path: Path, options: dict[str, object], kind: type[DeltacamError], says: str
 ) -> None:
     outputs = Outputs.of("drone-top-onshape.dxf", tmp_path)
-    for path in (outputs.program, outputs.report_json, outputs.report_html):
+    parquet = tmp_path / "drone-top-onshape.program.parquet"
+    for path in (outputs.program, parquet, outputs.report_json, outputs.report_html):
         path.write_text("old")
     with pytest.raises(kind) as caught:
         plan_to_folder(DXF / "drone-top-onshape.dxf", tmp_path, **options)

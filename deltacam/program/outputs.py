@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deltacam.errors import ProgramError
+from deltacam.program.formats import FORMATS, name_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,10 +29,14 @@ class Outputs:
     def clear(self) -> None:
         """Remove what an earlier run left, so that a failed run leaves no program to be used by mistake.
 
+        That is the program in every format that holds a whole one, and the reports.
+
         Raises:
             ProgramError: the operating system refuses.
         """
-        for path in (self.program, self.report_json, self.report_html):
+        name = name_of(self.program)
+        programs = [self.program.with_name(f"{name}{known.suffix}") for known in FORMATS.values() if known.whole]
+        for path in (*programs, self.report_json, self.report_html):
             try:
                 path.unlink(missing_ok=True)
             except NotADirectoryError:
