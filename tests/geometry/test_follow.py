@@ -80,16 +80,24 @@ def test_there_and_back_on_one_line_are_two_pieces() -> None:
     assert 50 in knots
 
 
-def test_a_corner_of_three_places_is_no_arc() -> None:
-    places = np.array([[0.0, 0.0], [0.01, 0.0], [0.01, 0.01]])
+def test_back_and_forth_between_the_ends_of_a_line_is_not_that_line() -> None:
+    places = np.outer([0.0, 0.06, 0.03, 0.1], [1.0, 0.0])
+    knots, _ = follow(places, ends(places), TOLERANCE)
+    assert knots.tolist() == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize("bend", [0.4, 0.5 * np.pi])
+def test_a_corner_of_three_places_is_no_arc(bend: float) -> None:
+    places = 0.01 * np.array([[0.0, 0.0], [1.0, 0.0], [1.0 + np.cos(bend), np.sin(bend)]])
     knots, bulges = follow(places, ends(places), TOLERANCE)
     assert (knots.tolist(), bulges.tolist()) == ([0, 1, 2], [0.0, 0.0])
 
 
-def test_a_polygon_with_few_corners_is_no_circle() -> None:
-    places = arc(0.01, 2.0 * np.pi, 9)
+@pytest.mark.parametrize(("turn", "count"), [(2.0 * np.pi, 9), (2.1, 4)])
+def test_the_corners_of_a_polygon_are_on_no_arc(turn: float, count: int) -> None:
+    places = arc(0.01, turn, count)
     _, bulges = follow(places, ends(places), TOLERANCE)
-    assert bulges.tolist() == [0.0] * 8
+    assert bulges.tolist() == [0.0] * (count - 1)
 
 
 def test_very_flat_arcs_become_lines() -> None:

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from deltacam.errors import ProgramError
 from deltacam.geometry import curve as curves
 from deltacam.model import Mode, Operation
-from deltacam.program import contents, gcode, gcode_writer
+from deltacam.program import contents, csv, gcode, gcode_writer
 from deltacam.program.gcode import HEAD, Moves
 from deltacam.program.program import Program
 from tests.bench import Bench
@@ -147,6 +147,7 @@ def test_the_file_looks_as_documented(bench_program: Program) -> None:
 
 
 @given(layer=NASTY, file=NASTY)
+@example(layer="x" * 5_000, file=")\nM3 S1000")
 def test_no_name_can_end_a_comment_or_mean_anything_in_it(bench_program: Program, layer: str, file: str) -> None:
     blocks = tuple(replace(block, layer=layer) for block in bench_program.blocks)
     named = replace(bench_program, blocks=blocks, drawing=replace(bench_program.drawing, file=file))
@@ -168,11 +169,48 @@ def test_blocks_that_are_not_in_the_list_are_moves_all_the_same(bench_program: P
     assert_follows(read(content), bench_program)
 
 
-def test_a_slow_start_gets_a_feed_above_zero(with_rows: Callable[..., Program], bench_program: Program) -> None:
-    q = bench_program.robot.inverse([[1e-9 * step, 0.0, -0.65] for step in range(3)])
-    slow = replace(bench_program, q=q, power=np.zeros(3), block=np.zeros(3, dtype=int), mode=Mode.FRAME)
-    moves = read(written(slow))
-    assert (moves.feed[moves.motion != 4] > 0.0).all()
+@pytest.fixture(scope="session")
+def through(bench_program: Program) -> Callable[..., Program]:
+    """A program in one block through places of the sheet."""
+
+    def build(places: np.ndarray, power: np.ndarray | None = None) -> Program:
+        robot, z, count = bench_program.robot, bench_program.placement.z, len(places)
+        return replace(
+            bench_program,
+            q=robot.inverse(np.column_stack([places, np.full(count, z)])),
+            power=np.zeros(count) if power is None else power,
+            block=np.full(count, 2),
+            placement=replace(bench_program.placement, x=0.0, y=0.0, rotation=0.0),
+        )
+
+    return build
+
+
+def test_a_motion_of_nanometres_has_a_feed_above_zero(through: Callable[..., Program]) -> None:
+    content = written(through(np.outer(np.linspace(0.0, 4e-9, 401), [1.0, 0.0])))
+    assert b"F0.001\n" in content
+    assert (read(content).feed > 0.0).all()
+
+
+def test_zero_has_no_sign(through: Callable[..., Program]) -> None:
+    content = written(through(np.array([[0.0, 0.0], [0.01, -1e-10], [-1e-10, 0.01]])))
+    assert not re.search(rb"-0\b(?!\.)", content)
+
+
+def test_the_laser_changes_within_a_block_where_its_power_does(through: Callable[..., Program]) -> None:
+    line = np.outer(np.linspace(0.0, 0.01, 9), [1.0, 0.0])
+    power = np.array([0.5] * 4 + [1e-7] * 3 + [0.25, 0.25])
+    moves = read(written(through(line, power)))
+    assert moves.power.tolist() == [0.5, 1e-6, 0.25]  # never so little that it would be off
+    assert moves.ends[:, 0] == pytest.approx([5e-3, 8.75e-3, 0.01], abs=1e-9)
+
+
+def test_a_program_from_a_file_gives_the_same_bytes(through: Callable[..., Program]) -> None:
+    program = through(np.random.default_rng(4).uniform(-0.1, 0.1, (50_000, 2)))
+    stream = io.BytesIO()
+    csv.write(program, stream)
+    stream.seek(0)
+    assert written(csv.read(stream, name="a")) == written(program)
 
 
 def test_a_program_of_one_row_has_no_moves(bench_program: Program) -> None:

@@ -2,7 +2,6 @@
 
 import io
 import json
-import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -204,14 +203,6 @@ def test_without_pyarrow_the_message_says_what_to_install(
         with pytest.raises(ProgramError, match="pyarrow, which is not installed") as caught:
             use()
         assert caught.value.hint == 'pip install "deltacam[parquet]"'
-
-
-def test_python_ends_well_after_reading(tmp_path: Path, with_rows: Callable[..., Program]) -> None:
-    # With Arrow's threads at work it sometimes aborts at its end.
-    write_program(with_rows(np.zeros((200_000, 3))), tmp_path / "a.program.parquet")
-    code = "import sys; from deltacam import read_program; read_program(sys.argv[1])"
-    for _ in range(8):
-        subprocess.run([sys.executable, "-c", code, str(tmp_path / "a.program.parquet")], check=True)
 
 
 def test_zero_has_no_sign(with_rows: Callable[..., Program]) -> None:
