@@ -30,6 +30,7 @@ _MAGIC: Final = b"PAR1"
 _TAIL: Final = 8  # bytes at the end: the length of the footer, and the magic number
 _MAX_FOOTER: Final = contents.MAX_META + 2**20
 _MAX_PARTS: Final = 100_000  # lists in the footer, such as that of the row groups
+_FEW_ROWS: Final = 1_000_000  # which a file of any size may hold: a program may rest
 _ROWS_PER_GROUP: Final = 2**20
 _ROWS_PER_BATCH: Final = 2**16
 _WHOLE: Final = ("tick", "block")
@@ -81,7 +82,7 @@ def read(stream: BinaryIO, *, name: str) -> Program:
         ProgramError: pyarrow is not installed, or the file cannot be interpreted.
     """
     arrow = _arrow()
-    _check_footer(stream, name)
+    size = _check_footer(stream, name)
     try:
         file = arrow.parquet.ParquetFile(
             stream,
@@ -92,7 +93,7 @@ def read(stream: BinaryIO, *, name: str) -> Program:
         metadata = file.metadata.metadata or {}
         meta = _read_meta(metadata, name)
         _check_columns(arrow, file, name)
-        columns = _read_columns(file, name)
+        columns = _read_columns(file, name, most=min(contents.MAX_ROWS, size + _FEW_ROWS))
     except (arrow.ArrowException, OSError, ValueError, MemoryError) as problem:
         reason = (str(problem).splitlines() or [type(problem).__name__])[0][:200]
         shown = reason.encode("unicode_escape").decode()  # it may hold names from the file
@@ -122,8 +123,8 @@ def _schema(arrow: Any) -> Any:
     return arrow.schema([arrow.field(name, kind, nullable=False) for name, kind in types.items()])
 
 
-def _check_footer(stream: BinaryIO, name: str) -> None:
-    """Refuses by their first and last bytes files that are something else, too large, or cut off."""
+def _check_footer(stream: BinaryIO, name: str) -> int:
+    """The size of the file; refuses by their first and last bytes those that are something else or cut off."""
     size = stream.seek(0, os.SEEK_END)
     stream.seek(0)
     head = stream.read(len(_MAGIC))
@@ -139,6 +140,7 @@ def _check_footer(stream: BinaryIO, name: str) -> None:
         raise contents.too_large(name)
     if int.from_bytes(tail[:4], "little") > _MAX_FOOTER:
         raise ProgramError(f"the footer is larger than {_MAX_FOOTER:,} bytes", where=name, hint=DAMAGED)
+    return size
 
 
 def _read_meta(found: dict[bytes, bytes], name: str) -> metas.Meta:
@@ -164,12 +166,13 @@ def _check_columns(arrow: Any, file: Any, name: str) -> None:
     for one, other in zip(found, wanted, strict=True):
         if one.type != other.type:
             raise ProgramError(f"the column {one.name} is {one.type}, not {other.type}", where=name, hint=DAMAGED)
-    if file.metadata.num_rows > contents.MAX_ROWS:
-        raise contents.too_large(name)
 
 
-def _read_columns(file: Any, name: str) -> list[Any]:
-    """The columns, each (N,); all numbers are there and finite, ticks and blocks fit into a double."""
+def _read_columns(file: Any, name: str, *, most: int) -> list[Any]:
+    """The columns, each (N,) with N at most ``most``; all numbers are there and finite, ticks and blocks fit a double.
+
+    The number of rows that the file states is not trusted.
+    """
     parts, rows = [], 0
     for batch in file.iter_batches(batch_size=_ROWS_PER_BATCH, use_threads=False):
         for column, values in zip(COLUMNS, batch.columns, strict=True):
@@ -179,8 +182,8 @@ def _read_columns(file: Any, name: str) -> list[Any]:
                 raise ProgramError(what, where=name, hint=DAMAGED)
         parts.append([values.to_numpy() for values in batch.columns])
         rows += len(batch)
-        if rows > contents.MAX_ROWS:
-            raise contents.too_large(name)
+        if rows > most:
+            raise ProgramError(f"the file holds more than {most:,} rows, which is too many for its size", where=name)
     if not rows:
         raise ProgramError("the program has no setpoint", where=name, hint=DAMAGED)
     return [np.concatenate(column) for column in zip(*parts, strict=True)]

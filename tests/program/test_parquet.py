@@ -180,12 +180,24 @@ def test_other_files_and_files_that_were_cut_off_are_told_apart(program: Program
     assert "not Parquet that can be read" in refused(content[:200] + content[-8:]).what
 
 
-@pytest.mark.parametrize(("limit", "value"), [("MAX_ROWS", 5), ("MAX_BYTES", 500)])
+@pytest.mark.parametrize(
+    ("limit", "value", "says"), [("MAX_ROWS", 5, "more than 5 rows"), ("MAX_BYTES", 500, "larger than")]
+)
 def test_what_is_too_large_is_refused(
-    program: Program, monkeypatch: pytest.MonkeyPatch, limit: str, value: int
+    program: Program, monkeypatch: pytest.MonkeyPatch, limit: str, value: int, says: str
 ) -> None:
     monkeypatch.setattr(contents, limit, value)
-    assert "larger than" in refused(written(program)).what
+    assert says in refused(written(program)).what
+
+
+def test_a_small_file_that_unpacks_to_very_many_rows_is_refused(
+    program: Program, with_rows: Callable[..., Program], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    count = 40_000
+    resting = written(with_rows(np.zeros((count, 3)), np.zeros(count), np.zeros(count, dtype=np.int64)))
+    assert len(parquet.read(io.BytesIO(resting), name="rest.program.parquet").q) == count
+    monkeypatch.setattr(parquet, "_FEW_ROWS", count - len(resting) - 1)
+    assert "too many for its size" in refused(resting).what
 
 
 def test_too_large_a_meta_object_is_refused(program: Program, monkeypatch: pytest.MonkeyPatch) -> None:
