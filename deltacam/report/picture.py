@@ -18,6 +18,8 @@ from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BlockKind, Drawing, IntArray, Operation
 from deltacam.plain import plain
 from deltacam.program.program import Program
+from deltacam.report.palette import speeds
+from deltacam.report.stretches import most_unusual, stretches
 from deltacam.report.thin import thin_lines
 from deltacam.robot.workspace import Workspace
 from deltacam.units import to_mm, to_um
@@ -32,7 +34,6 @@ _MAX_RUNS: Final = 12_000  # stretches of one colour
 _MAX_NUMBERS: Final = 60  # cuts that are numbered
 _SHEET_SHOWN: Final = 1.4  # how many times smaller the sheet may make the part
 _RAPID, _ENGRAVED, _SUBJECT = range(3)  # what a step is in the picture; the subject is coloured by speed
-_VIRIDIS: Final = ("440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725")
 _STYLE: Final = """
 .dc{--paper:#fff;--ink:#1f2328;--soft:#59636e;--line:#818b98;--part:#eaeef2;--edge:#d1d9e0;--mark:#bf3989;LIGHT}
 @media screen and (prefers-color-scheme:dark){
@@ -117,15 +118,10 @@ def _colour(speed: Array, step: float, count: int) -> IntArray:
 
 
 def _style(colours: int) -> str:
-    """The style sheet: the part of the ramp that is dark enough on light paper, light enough on dark."""
-    anchors = np.array([[int(colour[i : i + 2], 16) for i in (0, 2, 4)] for colour in _VIRIDIS])
-
-    def ramp(first: float, last: float) -> str:
-        at = np.linspace(first, last, colours) * (len(anchors) - 1)
-        rgb = np.column_stack([np.interp(at, np.arange(len(anchors)), anchors[:, i]) for i in range(3)])
-        return "".join("--c{}:#{:02x}{:02x}{:02x};".format(i, *row) for i, row in enumerate(rgb.round().astype(int)))
-
-    return _STYLE.replace("LIGHT", ramp(0.0, 0.8)).replace("DARK", ramp(0.28, 1.0))
+    """The style sheet with the colours of the speeds."""
+    inks = speeds(colours)
+    light, dark = ("".join(f"--c{i}:{ink[shade]};" for i, ink in enumerate(inks)) for shade in range(2))
+    return _STYLE.replace("LIGHT", light).replace("DARK", dark)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -213,7 +209,10 @@ def _drawn(drawing: Drawing | None, view: _View) -> str:
 
 def _paths(xy: Array, band: IntArray, colour: IntArray, view: _View) -> str:
     """The rapids as one dashed path, one of what is engraved, then a path per colour, the short slow ones on top."""
-    first, kind = _stretches(xy, band, colour, view.error * 3.0)
+    subject = band == _SUBJECT
+    usual = float(np.median(colour[subject])) if subject.any() else 0.0
+    colour = np.where(subject, colour, band - _SUBJECT)
+    first, (kind,) = stretches(xy, band, [most_unusual(colour, usual)], reach=view.error * 3.0, most=_MAX_RUNS)
     lines = [xy[start : end + 1] for start, end in zip(first, np.append(first[1:], len(band)), strict=True)]
 
     def drawn(of_kind: int, width: float, style: str) -> str:
@@ -226,28 +225,6 @@ def _paths(xy: Array, band: IntArray, colour: IntArray, view: _View) -> str:
     values = range(int(kind.max(initial=-1)), -1, -1)
     parts += [drawn(one, 2.0, f'class="speed" stroke="var(--c{one})" stroke-linecap="round"') for one in values]
     return "".join(parts)
-
-
-def _stretches(xy: Array, band: IntArray, colour: IntArray, reach: float) -> tuple[IntArray, IntArray]:
-    """Where the way changes colour: the first step of every stretch, and its colour, negative for other bands.
-
-    Steps within ``reach`` m of the way share a colour, that of the most unusual speed among them, so that no short stop
-    or burst is lost; where there are very many stretches it grows until they are fewer.
-    """
-    subject = band == _SUBJECT
-    usual = np.median(colour[subject]) if subject.any() else 0.0
-    steps = np.hypot(*np.diff(xy, axis=0).T)
-    first, kind = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    for doubling in range(12):
-        cell = np.floor((np.cumsum(steps) - steps) / (reach * 2.0**doubling))
-        first = np.flatnonzero((np.diff(cell, prepend=-1.0) != 0.0) | (np.diff(band, prepend=-1) != 0))
-        slow, fast = np.minimum.reduceat(colour, first), np.maximum.reduceat(colour, first)
-        kind = np.where(subject[first], np.where(fast - usual > usual - slow, fast, slow), band[first] - _SUBJECT)
-        change = np.diff(kind, prepend=-_SUBJECT - 1) != 0
-        first, kind = first[change], kind[change]
-        if len(first) <= _MAX_RUNS:
-            break
-    return first, kind
 
 
 def _starts(evidence: Evidence, view: _View) -> str:
