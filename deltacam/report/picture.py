@@ -33,7 +33,8 @@ _ERROR: Final = 1 / 6000  # of the part: how far a drawn path may leave the setp
 _MAX_RUNS: Final = 12_000  # stretches of one colour
 _MAX_NUMBERS: Final = 60  # cuts that are numbered
 _SHEET_SHOWN: Final = 1.4  # how many times smaller the sheet may make the part
-_RAPID, _ENGRAVED, _SUBJECT = range(3)  # what a step is in the picture; the subject is coloured by speed
+RAPID, ENGRAVED, SUBJECT = range(3)
+"""What a step is in the picture: the subject is what is coloured."""
 _STYLE: Final = """
 .dc{--paper:#fff;--ink:#1f2328;--soft:#59636e;--line:#818b98;--part:#eaeef2;--edge:#d1d9e0;--mark:#bf3989;LIGHT}
 @media screen and (prefers-color-scheme:dark){
@@ -60,14 +61,14 @@ def to_svg(program: Program, *, drawing: Drawing | None) -> str:
 
 def draw(evidence: Evidence, drawing: Drawing | None) -> str:
     """As `to_svg`, of evidence that was gathered already."""
-    view = _View.around(evidence, drawing)
+    view = View.around(evidence, drawing)
     step, colours, parts = 1.0, 1, [_drawn(drawing, view)]
     if len(evidence.sheet) > 1:
-        band = _bands(evidence)
+        band = bands(evidence)
         speed = tool_speeds(evidence)
-        cut = speed[band == _SUBJECT]
+        cut = speed[band == SUBJECT]
         step, colours = speed_colours(cut) if len(cut) else (1.0, 0)
-        parts += [_paths(evidence.sheet, band, _colour(speed, step, colours), view), _starts(evidence, view)]
+        parts += [_paths(evidence.sheet, band, colours_of(speed, step, colours), view), _starts(evidence, view)]
     about = evidence.impossible[1] or f"path within {to_um(view.error) + 1.0:.0f} µm of the setpoints"
     height = view.height + _FOOTER
     return (
@@ -89,7 +90,7 @@ def tool_speeds(evidence: Evidence) -> Array:
     return to_mm(1.0) * evidence.speed
 
 
-def _bands(evidence: Evidence) -> IntArray:
+def bands(evidence: Evidence) -> IntArray:
     """What each step is, (N - 1,): a rapid, engraved, or the subject: the cuts.
 
     Where nothing is cut and nothing engraved, as in a frame, the subject is the whole way.
@@ -97,7 +98,7 @@ def _bands(evidence: Evidence) -> IntArray:
     steps = max(len(evidence.tool) - 1, 0)
     on = (evidence.is_kind(LASER_KINDS) | (evidence.program.power > 0.0))[:steps]
     engraved = evidence.is_kind(frozenset({BlockKind.ENGRAVE}))[:steps]
-    return np.where(engraved, _ENGRAVED, np.where(on | (not on.any()), _SUBJECT, _RAPID))
+    return np.where(engraved, ENGRAVED, np.where(on | (not on.any()), SUBJECT, RAPID))
 
 
 def _engraves(evidence: Evidence) -> bool:
@@ -109,10 +110,10 @@ def speed_colours(speed: Array) -> tuple[float, int]:
     top = max(float(speed.max(initial=0.0)), 1.0)
     power = 10.0 ** math.floor(math.log10(top / 14.0))
     step = next(power * factor for factor in (1.0, 2.0, 2.5, 5.0, 10.0) if power * factor * 14.0 >= top * (1.0 - 1e-9))
-    return step, int(_colour(np.array([top]), step, 15)[0]) + 1
+    return step, int(colours_of(np.array([top]), step, 15)[0]) + 1
 
 
-def _colour(speed: Array, step: float, count: int) -> IntArray:
+def colours_of(speed: Array, step: float, count: int) -> IntArray:
     """The colour of each speed: a round speed, and also one that is half a step off, is well inside a colour."""
     return np.minimum(np.floor(speed / step + 0.53).astype(np.int64), count - 1)
 
@@ -125,7 +126,7 @@ def _style(colours: int) -> str:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _View:
+class View:
     """What is shown of the sheet frame, and where.
 
     Attributes:
@@ -135,6 +136,7 @@ class _View:
         height: pixels.
         origin: where x = y = 0 lies, pixels.
         sheet: the sheet's edge, (K, 2) m; empty where it is not shown.
+        box: the lower left and the upper right corner of all that is shown, (2, 2) m.
     """
 
     caption: str
@@ -143,17 +145,19 @@ class _View:
     height: float
     origin: tuple[float, float]
     sheet: Array
+    box: Array
 
     @classmethod
-    def around(cls, evidence: Evidence, drawing: Drawing | None) -> _View:
+    def around(cls, evidence: Evidence, drawing: Drawing | None) -> View:
+        """Room for the part, everything that is worked, and the sheet where it is not much larger."""
         boxes = Pack.of(contour.curve for contour in drawing.contours).bounds() if drawing else np.zeros((0, 4))
-        subject = _bands(evidence) != _RAPID
+        subject = bands(evidence) != RAPID
         places = (
             evidence.sheet[np.append(subject, False) | np.append(False, subject)] if len(subject) else evidence.sheet
         )
         part = boxes.reshape(-1, 2) if len(boxes) else places if len(places) else np.zeros((1, 2))
         width, depth = np.ptp(part, axis=0)
-        seen, sheet = np.vstack([part, places]), to_sheet(evidence.program, _sheet_edge(evidence.robot.workspace))
+        seen, sheet = np.vstack([part, places]), to_sheet(evidence.program, sheet_edge(evidence.robot.workspace))
         if _scale(seen) > _SHEET_SHOWN * _scale(np.vstack([seen, sheet])):
             sheet = np.zeros((0, 2))
         seen = np.vstack([seen, sheet])
@@ -161,7 +165,8 @@ class _View:
         height = max(float(extent[1]) * scale, 120.0) + 2 * _MARGIN
         x, y = ((_WIDTH, height) + np.array((-1.0, 1.0)) * (2.0 * low + extent) * scale) / 2.0
         caption = f"{'part' if len(boxes) else 'path'} {to_mm(width):.2f} \u00d7 {to_mm(depth):.2f} mm"
-        return cls(caption, _ERROR * max(width, depth, 1e-3), scale, height, (float(x), float(y)), sheet)
+        error, box = _ERROR * max(width, depth, 1e-3), np.stack([low, low + extent])
+        return cls(caption, error, scale, height, (float(x), float(y)), sheet, box)
 
     def path(self, lines: Sequence[Array], *, width: float, style: str) -> str:
         """A path of polylines (K, 2) m as relative moves, without the points that it can spare."""
@@ -182,7 +187,7 @@ def _scale(points: Array) -> float:
     return float(min((_WIDTH - 2 * _MARGIN) / width, _TALLEST / height))
 
 
-def _sheet_edge(sheet: Workspace) -> Array:
+def sheet_edge(sheet: Workspace) -> Array:
     """The edge of the sheet in the base frame, (K, 2) m."""
     if sheet.radius is not None:
         turn = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
@@ -190,7 +195,7 @@ def _sheet_edge(sheet: Workspace) -> Array:
     return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * (sheet.width or 0.0, sheet.depth or 0.0) / 2.0
 
 
-def _drawn(drawing: Drawing | None, view: _View) -> str:
+def _drawn(drawing: Drawing | None, view: View) -> str:
     """The sheet's edge and the contours, the material between them filled."""
     sheet = [np.vstack([view.sheet, view.sheet[:1]])] if len(view.sheet) else []
     edges: list[Array] = []
@@ -207,11 +212,11 @@ def _drawn(drawing: Drawing | None, view: _View) -> str:
     )
 
 
-def _paths(xy: Array, band: IntArray, colour: IntArray, view: _View) -> str:
+def _paths(xy: Array, band: IntArray, colour: IntArray, view: View) -> str:
     """The rapids as one dashed path, one of what is engraved, then a path per colour, the short slow ones on top."""
-    subject = band == _SUBJECT
+    subject = band == SUBJECT
     usual = float(np.median(colour[subject])) if subject.any() else 0.0
-    colour = np.where(subject, colour, band - _SUBJECT)
+    colour = np.where(subject, colour, band - SUBJECT)
     first, (kind,) = stretches(xy, band, [most_unusual(colour, usual)], reach=view.error * 3.0, most=_MAX_RUNS)
     lines = [xy[start : end + 1] for start, end in zip(first, np.append(first[1:], len(band)), strict=True)]
 
@@ -220,14 +225,14 @@ def _paths(xy: Array, band: IntArray, colour: IntArray, view: _View) -> str:
         return view.path(chosen, width=width, style=f'{style} fill="none"')
 
     dash = f'stroke="var(--line)" stroke-dasharray="{5e6 / view.per_metre:.4g}"'
-    parts = [drawn(_RAPID - _SUBJECT, 0.8, f'class="rapid" {dash}')]
-    parts.append(drawn(_ENGRAVED - _SUBJECT, 1.6, 'class="engraved" stroke="var(--mark)" stroke-linecap="round"'))
+    parts = [drawn(RAPID - SUBJECT, 0.8, f'class="rapid" {dash}')]
+    parts.append(drawn(ENGRAVED - SUBJECT, 1.6, 'class="engraved" stroke="var(--mark)" stroke-linecap="round"'))
     values = range(int(kind.max(initial=-1)), -1, -1)
     parts += [drawn(one, 2.0, f'class="speed" stroke="var(--c{one})" stroke-linecap="round"') for one in values]
     return "".join(parts)
 
 
-def _starts(evidence: Evidence, view: _View) -> str:
+def _starts(evidence: Evidence, view: View) -> str:
     """A dot where each cut begins, with its place in the order while there is room for numbers."""
     parts, cuts = [], [run for run in evidence.runs if run.operation is Operation.CUT]
     for number, run in enumerate(cuts, start=1):
@@ -239,7 +244,7 @@ def _starts(evidence: Evidence, view: _View) -> str:
     return "".join(parts)
 
 
-def _footer(view: _View, step: float, colours: int, *, engraved: bool) -> str:
+def _footer(view: View, step: float, colours: int, *, engraved: bool) -> str:
     """The size, a scale bar, and what the colours and lines stand for."""
     power = 10.0 ** math.floor(math.log10(150.0 / view.per_metre))
     bar = max(power * factor for factor in (1.0, 2.0, 5.0) if power * factor * view.per_metre <= 150.0)
