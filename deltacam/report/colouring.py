@@ -50,16 +50,19 @@ def by_speed(speed: Array, subject: np.ndarray) -> Colouring:
     return Colouring("Speed", "tool speed, mm/s", palette.speeds(count), labels, most_unusual(colour, usual))
 
 
-def by_deviation(deviation: Array, limit: float) -> Colouring:
-    """The deviation of every step, (M,) m, nan where it is not known, against its ``limit`` m."""
+def by_deviation(deviation: Array, tolerance: float, limit: float) -> Colouring:
+    """The deviation of every step, (M,) m, nan where it is not known: levels up to the tolerance, m.
+
+    What is over the ``limit``, which is the tolerance and what rounding may add, m, has a colour of its own.
+    """
     known = np.isfinite(deviation)
-    level = np.where(known, deviation, 0.0) * (_LEVELS / limit)
-    colour = np.where(known, np.minimum(level.astype(np.int64), _LEVELS) + 1, 0)
-    step = to_um(limit) / _LEVELS
-    over = f"over {to_um(limit):.3g}" if (colour > _LEVELS).any() else ""
+    level = np.clip(np.ceil(np.where(known, deviation, 0.0) * (_LEVELS / tolerance)), 1, _LEVELS)
+    colour = np.where(known, np.where(deviation > limit, _LEVELS + 1, level.astype(np.int64)), 0)
+    step = to_um(tolerance) / _LEVELS
+    over = f"over {to_um(tolerance):.3g}" if (colour > _LEVELS).any() else ""
     labels = ["", *(f"{step * (i + 1):.3g}" for i in range(_LEVELS)), over]
     inks = [palette.BINDING[-1], *palette.deviations(_LEVELS), palette.OVER]
-    return Colouring("Deviation", "deviation from the kerf path up to, µm", inks, labels, largest(colour))
+    return Colouring("Deviation", "deviation up to, µm", inks, labels, largest(colour))
 
 
 def by_limit(nearest: Binding) -> Colouring:
@@ -69,5 +72,5 @@ def by_limit(nearest: Binding) -> Colouring:
     def choose(first: IntArray) -> IntArray:
         return limit_of(np.maximum.reduceat(ranked[:-1], first))
 
-    labels = [*LIMITS, f"none used to {100 * NEAR:.0f} %"]
-    return Colouring("Limit", "the limit that is nearest", palette.BINDING, labels, choose, ramp=False)
+    labels = [*LIMITS, f"none near ({100 * NEAR:.0f} %)"]
+    return Colouring("Limit", "nearest limit", palette.BINDING, labels, choose, ramp=False)

@@ -62,7 +62,7 @@ def to_html(
 def _body(report: Report, evidence: Evidence, drawing: Drawing | None, moving: str) -> str:
     held = table(held_back.HEADS, held_back.rows(report.held)) if report.held else ""
     parts = (
-        ("Checks", sections.checks(report.checks, evidence.rate)),
+        ("Checks", sections.checks(report.checks, evidence)),
         ("Findings", sections.findings(report)),
         ("What limits the speed", held),
         ("Contours", sections.contours(evidence, drawing)),

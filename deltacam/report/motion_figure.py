@@ -16,7 +16,7 @@ from deltacam.units import to_mm, to_um
 from deltacam.verification.evidence import Evidence
 
 _GAP: Final = 30.0  # pixels between two rows, for their headings
-_TOP, _BOTTOM = 34.0, 40.0
+_TOP, _BOTTOM = 46.0, 40.0
 _CUT_OFF: Final = 2.0  # times the limit: what is beyond is not in the picture until it is zoomed
 _MARGIN: Final = {"l": 52, "r": 14, "t": _TOP, "b": _BOTTOM}
 
@@ -68,8 +68,8 @@ def deviation_figure(deviation: Array, limit: float, length: float) -> Json:
     """The deviation (N,) m with its ``limit`` m over the ``length`` m that is worked."""
     worst = to_um(float(np.fmax.reduce(deviation, initial=0.0)))
     line = Line("deviation", palette.TOOL, worst)
-    note = f"largest {worst:.3g}, limit {to_um(limit):.3g}"
-    row = Row("Deviation from the kerf path, µm", note, 170.0, [line], [(to_um(limit), palette.LIMIT)], 0.0)
+    note = f"{worst:.3g} of {to_um(limit):.3g}"
+    row = Row("Deviation, µm", note, 170.0, [line], [(to_um(limit), palette.LIMIT)], 0.0)
     return _stacked([row], "length cut and engraved, mm", max(to_mm(length), 1e-3))
 
 
@@ -77,7 +77,7 @@ def _tool(evidence: Evidence, motion: Motion) -> Row:
     limit, feed = to_mm(evidence.robot.tool.max_speed), to_mm(evidence.program.process.feed)
     worst = to_mm(float(motion.speed.max()))
     limits = [(limit, palette.LIMIT), (feed, palette.BINDING[0])]
-    note = f"largest {worst:.4g}, feed {feed:.4g}, limit {limit:.4g}"
+    note = f"{worst:.4g} of {limit:.4g}"
     return Row("Tool speed, mm/s", note, 110.0, [Line("speed", palette.TOOL, worst)], limits, 0.0)
 
 
@@ -115,7 +115,7 @@ def _shares(shares: Array) -> str:
         f'<span style="color:{ink.light}">{100 * share:.0f}</span>'
         for ink, share in zip(palette.JOINTS, shares.tolist(), strict=True)
     )
-    return f"largest {' · '.join(words)} % of limit"
+    return f"{' · '.join(words)} %"
 
 
 def _stacked(rows: Sequence[Row], title: str, end: float) -> Json:

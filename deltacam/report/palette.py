@@ -51,6 +51,12 @@ OVER: Final = Ink("#e5202e", "#ff4d4d")
 _FIXED: Final = (TEXT, STRONG, GRID, ZERO, LINE, RAPID, PART, SHEET, LIMIT, TOOL, ANGLE, *JOINTS, *BINDING, OVER)
 
 
+def css(ink: Ink) -> str:
+    """A light colour in the one spelling that `dark_rules` finds."""
+    red, green, blue = (int(ink.light[i : i + 2], 16) for i in (1, 3, 5))
+    return f"rgb({red}, {green}, {blue})"
+
+
 def speeds(count: int) -> list[Ink]:
     """Viridis in ``count`` colours: the part that is dark enough on light paper, light enough on a dark screen."""
     return list(map(Ink, _ramp(_VIRIDIS, 0.0, 0.8, count), _ramp(_VIRIDIS, 0.28, 1.0, count)))
@@ -65,9 +71,8 @@ def dark_rules(further: Iterable[Ink]) -> str:
     """The style sheet that turns every colour, those of ``further`` too, into its dark one inside ``.inked``."""
     rules = []
     for ink in dict.fromkeys((*_FIXED, *further)):
-        red, green, blue = (int(ink.light[i : i + 2], 16) for i in (1, 3, 5))
         rules += [
-            f'.inked [style*="{what}: rgb({red}, {green}, {blue})"]{{{what}:{ink.dark}!important}}'
+            f'.inked [style*="{what}: {css(ink)}"]{{{what}:{ink.dark}!important}}'
             for what in ("stroke", "fill", "background-color")
         ]
     lines = "\n".join(rules)

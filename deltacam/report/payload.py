@@ -15,7 +15,7 @@ from deltacam.report.colouring import Colouring, by_deviation, by_limit, by_spee
 from deltacam.report.figures import Json, packed
 from deltacam.report.motion import Motion, deviations, motion_of
 from deltacam.report.motion_figure import deviation_figure, motion_figure
-from deltacam.report.palette import BINDING, JOINTS, Ink
+from deltacam.report.palette import BINDING, Ink
 from deltacam.report.part_figure import part_figure, route
 from deltacam.report.picture import RAPID, View, bands
 from deltacam.report.samples import Sampling
@@ -36,7 +36,8 @@ def payload(evidence: Evidence, drawing: Drawing | None) -> tuple[Json, list[Ink
     nearest = binding(evidence, motion)
     deviation = _deviations(evidence, drawing)
     sampling = Sampling.of(len(evidence.program.q))
-    limit = evidence.program.process.tolerance + ACCURACY
+    tolerance = evidence.program.process.tolerance
+    limit = tolerance + ACCURACY
     data: Json = {
         "ticks": sampling.ticks,
         "step": sampling.step,
@@ -48,7 +49,6 @@ def payload(evidence: Evidence, drawing: Drawing | None) -> tuple[Json, list[Ink
         "motion": motion_figure(evidence, motion),
         "workspace": workspace_figure(evidence, drawing, view),
         "limits": list(LIMITS),
-        "joints": [ink.light for ink in JOINTS],
         "binding": [ink.light for ink in BINDING],
     }
     colourings: list[Colouring] = []
@@ -56,7 +56,7 @@ def payload(evidence: Evidence, drawing: Drawing | None) -> tuple[Json, list[Ink
         subject = bands(evidence) != RAPID
         colourings = [by_speed(motion.speed[:-1], subject), by_limit(nearest)]
         if deviation is not None:
-            colourings.insert(1, by_deviation(deviation[:-1], limit))
+            colourings.insert(1, by_deviation(deviation[:-1], tolerance, limit))
         data["place"] = [packed(sampling.at_first(to_mm(1.0) * column)) for column in evidence.sheet.T]
         data["route"] = route(evidence, colourings, view, exact=sampling.step == 1)
     if deviation is not None:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from deltacam.report.binding import LIMITS
 from deltacam.report.figures import Json
+from deltacam.report.palette import BINDING, JOINTS, Ink, css
 from deltacam.units import to_um
 
 
@@ -22,9 +26,10 @@ def pictures(data: Json) -> str:
 <figcaption>The sheet, the part with its bounding box, the joints (squares) on the base, park (cross), in mm from the
 centre of the base. Thin lines: the pressure angle in degrees.</figcaption></figure>
 </div>
-<figure class="moving"><div class="bar"><h3>Motion</h3>{_legend(data)}</div>
+<figure class="moving"><div class="bar"><h3>Motion</h3>{_legend()}</div>
 <div class="plot inked" id="motion" role="img" aria-label="Tool and joints over time, with their limits"></div>
-<figcaption>Drag over a time to zoom, double-click for all. Dashed: limits. {_samples(data)}</figcaption></figure>
+<figcaption>Drag over a time to zoom, double-click for all. Dashed: limits; to the right: the most that is used,
+of each joint. {_samples(data)}</figcaption></figure>
 {_deviation(data)}</section>
 """
 
@@ -44,15 +49,16 @@ def _samples(data: Json) -> str:
     return f"Each point pair is the smallest and the largest of {data['step']} setpoints."
 
 
-def _legend(data: Json) -> str:
-    joints = "".join(
-        f'<li><i style="background-color: {color}"></i>joint {i + 1}</li>' for i, color in enumerate(data["joints"])
-    )
-    limits = "".join(
-        f'<li><i style="background-color: {color}"></i>{name}</li>'
-        for name, color in zip([*data["limits"], "none near"], data["binding"], strict=True)
-    )
-    return f'<div class="legend inked"><ul>{joints}</ul><ul>{limits}</ul></div>'
+def _legend() -> str:
+    joints = _colours(JOINTS, (f"joint {number}" for number in (1, 2, 3)))
+    limits = _colours(BINDING, [*LIMITS, "none near"])
+    return f"""<div class="legend inked"><span>lines</span><ul>{joints}</ul></div>
+<div class="legend inked"><span>nearest limit</span><ul>{limits}</ul></div>"""
+
+
+def _colours(inks: Iterable[Ink], names: Iterable[str]) -> str:
+    pairs = zip(inks, names, strict=True)
+    return "".join(f'<li><i style="background-color: {css(ink)}"></i>{name}</li>' for ink, name in pairs)
 
 
 def _deviation(data: Json) -> str:

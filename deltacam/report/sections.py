@@ -22,7 +22,6 @@ _HANDLES: Final = 3  # of a contour that are named
 def tiles(summary: Mapping[str, Any], program: Program) -> str:
     """The figures that matter; those that the summary does not have are left out."""
     minutes, seconds = divmod(program.duration, 60.0)
-    shares = {f"{name}, of limit": f"{100 * share:.0f} %" for name, share in summary.get("share_of_limit", {}).items()}
     engraved = summary.get("contours_engraved", 0)
     size = " \u00d7 ".join(f"{side:.2f}" for side in summary.get("part_size_mm", ()))
     tiles = {
@@ -33,27 +32,48 @@ def tiles(summary: Mapping[str, Any], program: Program) -> str:
         "contours engraved": str(engraved) if engraved else "",
         "part": f"{size} mm" if size else "",
         "unit of the drawing": str(summary.get("unit", "")),
-        **shares,
         "feed": f"{_number(to_mm(program.process.feed))} mm/s",
         "process": program.process.name,
         "robot": program.robot.name,
         "mode": "" if program.mode is Mode.CUT else program.mode.value.replace("_", " "),
     }
     cells = (f"<div><dt>{shown(name)}</dt><dd>{shown(value)}</dd></div>" for name, value in tiles.items() if value)
-    return f"<dl>{''.join(cells)}</dl>\n"
+    return f"<dl>{''.join(cells)}</dl>\n{_shares(summary.get('share_of_limit', {}))}"
 
 
-def checks(checks: Sequence[Check], rate: float) -> str:
-    """The failed checks first, otherwise in their order."""
+def _shares(shares: Mapping[str, float]) -> str:
+    """How much of each limit is used at most, as bars."""
+    cells = "".join(
+        f"<div><dt>{shown(name)}</dt><dd>{100 * share:.0f} % "
+        f'<i><b style="width:{min(max(100 * share, 0), 100):.0f}%"></b></i></dd></div>'
+        for name, share in shares.items()
+    )
+    return f'<dl class="shares" aria-label="Largest share of each limit">{cells}</dl>\n' if cells else ""
+
+
+def checks(found: Sequence[Check], evidence: Evidence) -> str:
+    """The failed checks first, otherwise in their order; where a place is known, a button goes there."""
     rows = []
-    for check in sorted(checks, key=lambda check: check.passed):
+    for check in sorted(found, key=lambda check: check.passed):
         verdict = '<span class="ok">\u2713 passed</span>' if check.passed else '<span class="bad">\u2717 failed</span>'
-        time = "" if check.tick is None else f"{check.tick / rate:.4f}"
+        time = "" if check.tick is None else f"{check.tick / evidence.rate:.4f}"
         limit = "no limit" if check.limit is None and check.worst is not None else _number(check.limit)
         numbers = (_number(check.worst), limit, shown(check.unit), time)
-        rows.append((shown(check.name), verdict, *numbers, shown(check.where)))
+        rows.append((shown(check.name), verdict, *numbers, shown(check.where) + _button(check, evidence)))
     heads = ("check", "verdict", "worst", "limit", "unit", "time, s", "where")
     return table(heads, rows, numbers=(2, 3, 5), fold=False)
+
+
+def _button(check: Check, evidence: Evidence) -> str:
+    """Goes to the place of a check in the picture of the part."""
+    place, known = check.place, len(evidence.sheet)
+    if place is None and check.tick is not None and check.tick < known:
+        place = (float(evidence.sheet[check.tick, 0]), float(evidence.sheet[check.tick, 1]))
+    if place is None or not known:
+        return ""
+    tick = "" if check.tick is None else f' data-tick="{check.tick}"'
+    x, y = (f"{to_mm(value):.4f}" for value in place)
+    return f'<button type="button" class="go" data-x="{x}" data-y="{y}"{tick}>Show</button>'
 
 
 def findings(report: Report) -> str:

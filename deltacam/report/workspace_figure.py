@@ -18,6 +18,7 @@ from deltacam.units import to_mm
 from deltacam.verification.evidence import Evidence
 
 _GRID: Final = 41  # places per side at which the pressure angle is known
+_LEVELS: Final = 9  # of pressure angle, about
 _COARSE: Final = 4.0  # times coarser than the picture of the part
 
 
@@ -46,7 +47,8 @@ def workspace_figure(evidence: Evidence, drawing: Drawing | None, view: View) ->
         dots(_mm(geometry.base_radius * towards), palette.STRONG, size=9, symbol="square"),
         dots(_mm(np.array([robot.workspace.park])), palette.LIMIT, size=9, symbol="cross-thin-open"),
     ]
-    seen = np.concatenate([sheet, corners, subject])
+    elbows = (geometry.base_radius + geometry.upper_arm) * towards
+    seen = np.concatenate([sheet, corners, subject, elbows])
     return {
         "traces": traces,
         "layout": map_layout(_mm(np.stack([seen.min(axis=0), seen.max(axis=0)]))),
@@ -71,6 +73,7 @@ def _pressure(robot: Robot, sheet: Array) -> list[Json]:
         angle = np.degrees(np.maximum(*robot.pressure_angles(points)).max(axis=1))
     except RobotError:
         return []
+    step = next((size for size in (1.0, 2.0, 5.0) if np.ptp(angle) < _LEVELS * size), 10.0)
     field = np.full(len(places), np.nan)
     field[on] = angle
     rows = field.round(2).astype(object)
@@ -81,10 +84,13 @@ def _pressure(robot: Robot, sheet: Array) -> list[Json]:
             "x": _mm(x).round(3).tolist(),
             "y": _mm(y).round(3).tolist(),
             "z": rows.reshape(-1, _GRID).tolist(),
-            "ncontours": 9,
+            "autocontour": False,
             "showscale": False,
             "line": {"color": palette.ZERO.light, "width": 1},
             "contours": {
+                "start": float(np.ceil(angle.min() / step) * step),
+                "end": float(angle.max()),
+                "size": step,
                 "coloring": "none",
                 "showlabels": True,
                 "labelfont": {"size": 10, "color": palette.TEXT.light},

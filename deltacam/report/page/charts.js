@@ -38,7 +38,7 @@ class Charts {
   }
 
   draw(i) {
-    this.overlay.upright("time", i === null ? null : this.x[i]);
+    this.overlay.upright("time", this.x[i]);
   }
 }
 
@@ -58,26 +58,31 @@ class Strip {
       x: [],
       y: [],
       line: { width: 0 },
-      fill: "tozeroy",
+      fill: "toself",
       fillcolor: color,
     }));
-    let before = null;
+    const close = (area) => {
+      area?.x.push(area.x[area.x.length - 1], null);
+      area?.y.push(0, null);
+    };
+    let open = null;
     for (let cell = 0; cell < cells; cell++) {
       const start = first + Math.floor((cell * (last - first + 1)) / cells);
       const end = first + Math.floor(((cell + 1) * (last - first + 1)) / cells);
       let most = start;
       for (let i = start; i < end; i++) if (share[i] > share[most]) most = i;
-      const trace = found[samples.limit[most]];
-      if (before !== trace && trace.x.length) this.put(trace, null, null);
-      this.put(trace, samples.time[start], share[most]);
-      this.put(trace, (end * samples.step) / samples.rate, share[most]);
-      before = trace;
+      const [left, right] = [samples.time[start], (end * samples.step) / samples.rate];
+      const area = found[samples.limit[most]];
+      if (area !== open) {
+        close(open);
+        area.x.push(left);
+        area.y.push(0);
+        open = area;
+      }
+      area.x.push(left, right);
+      area.y.push(share[most], share[most]);
     }
+    close(open);
     return found;
-  }
-
-  put(trace, x, y) {
-    trace.x.push(x);
-    trace.y.push(y);
   }
 }

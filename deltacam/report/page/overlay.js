@@ -52,7 +52,7 @@ class Overlay {
   /** A line from the top to the bottom of all rows. */
   upright(name, x) {
     const { xaxis, _size: size } = this.axes;
-    const at = x === null ? -1 : xaxis.d2p(x);
+    const at = xaxis.d2p(x);
     const inside = at >= 0 && at <= xaxis._length;
     const [left, top, bottom] = [xaxis._offset + at, size.t, size.t + size.h];
     this.draw(name, "path", inside ? { d: `M${left} ${top}V${bottom}` } : null);

@@ -1,10 +1,13 @@
 /* Puts the pictures into the page and links them: what is pointed at in one of them is shown in all. */
 
+/* These buttons and no others: plotly.js has some that send data away. */
 const CONFIG = {
   responsive: true,
   displaylogo: false,
   doubleClick: "reset",
-  modeBarButtonsToRemove: ["toImage", "select2d", "lasso2d", "autoScale2d"],
+  showSendToCloud: false,
+  plotlyServerURL: "",
+  modeBarButtons: [["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]],
 };
 const LONGEST_PLAY = 60; // s
 
@@ -44,22 +47,23 @@ class Page {
     this.data = data;
     this.samples = new Samples(data);
     this.tip = new Tip();
-    this.now = null;
+    this.now = 0;
     this.slider = document.getElementById("time");
-    const config = { ...CONFIG };
     const figure = (name) => document.getElementById(name);
     this.size(figure("part"), figure("workspace"));
-    this.part = new Part(figure("part"), data, this.samples, config);
-    this.workspace = new Workspace(figure("workspace"), data, this.part, config);
+    window.addEventListener("resize", () => this.size(figure("part"), figure("workspace")));
+    this.part = new Part(figure("part"), data, this.samples, CONFIG);
+    this.workspace = new Workspace(figure("workspace"), data, this.part, CONFIG);
     const strip = new Strip(data.binding);
-    this.motion = new Charts(figure("motion"), data.motion, this.samples, this.samples.time, config, strip);
+    this.motion = new Charts(figure("motion"), data.motion, this.samples, this.samples.time, CONFIG, strip);
     this.views = [this.part, this.workspace, this.motion];
     if (data.deviation) {
       const { worked } = this.samples.series;
-      this.views.push(new Charts(figure("deviation"), data.deviation, this.samples, worked[0], config));
+      this.views.push(new Charts(figure("deviation"), data.deviation, this.samples, worked[0], CONFIG));
     }
     this.views.forEach((view) => this.follow(view));
     this.buttons();
+    Plotly.Plots.resize(this.workspace.figure);
     this.clock();
     this.places();
     this.printing();
@@ -80,9 +84,9 @@ class Page {
     const point = (event) => {
       const place = view.overlay.under(event);
       const i = place && view.pick(place);
+      if (i === null) return this.tip.hide();
       this.show(i);
-      if (i === null) this.tip.hide();
-      else this.tip.show(event, words(this.data, this.samples, i));
+      return this.tip.show(event, words(this.data, this.samples, i));
     };
     view.figure.addEventListener("pointermove", point);
     view.figure.addEventListener("pointerdown", point);
@@ -91,11 +95,11 @@ class Page {
     view.draw(this.now);
   }
 
-  /** Show a sample in all pictures; null shows none. */
+  /** Show a sample in all pictures. */
   show(i) {
     this.now = i;
     this.views.forEach((view) => view.draw(i));
-    if (i !== null) this.slider.value = String(i);
+    this.slider.value = String(i);
   }
 
   buttons() {
@@ -152,7 +156,7 @@ class Page {
       button.addEventListener("click", () => {
         const { x, y, tick } = button.dataset;
         this.part.goTo([Number(x), Number(y)]);
-        this.show(tick ? Math.floor(Number(tick) / this.samples.step) : null);
+        this.show(tick ? Math.floor(Number(tick) / this.samples.step) : this.now);
         this.part.figure.scrollIntoView({ block: "center" });
       });
     });

@@ -94,7 +94,7 @@ class Part {
   }
 
   place(i) {
-    return this.samples.place && i !== null ? this.samples.place.map((column) => column[i]) : null;
+    return this.samples.place ? this.samples.place.map((column) => column[i]) : null;
   }
 
   draw(i) {
@@ -135,25 +135,29 @@ class Workspace {
 
   draw(i) {
     const place = this.part.place(i);
-    this.overlay.draw("arms", "path", place ? { d: this.arms(i, place) } : null);
-    const { placement } = this.data;
-    const turned = place && this.turn(place, placement.rotation);
-    this.overlay.dot("tool", place && [turned[0] + placement.x, turned[1] + placement.y], 5);
+    const tool = place && this.toBase(place);
+    const arms = tool ? this.arms(i, tool) : [];
+    arms.forEach(([shoulder, elbow, wrist], joint) => {
+      this.overlay.draw(`forearm joint${joint + 1}`, "path", { d: `M${elbow.join(" ")}L${wrist.join(" ")}` });
+      this.overlay.draw(`upperarm joint${joint + 1}`, "path", { d: `M${shoulder.join(" ")}L${elbow.join(" ")}` });
+    });
+    this.overlay.dot("tool", tool, 5);
   }
 
-  /** Upper arms and forearms from above: each elbow lies in the vertical plane of its joint. */
-  arms(i, place) {
-    const { placement, arms } = this.data;
-    const turned = this.turn(place, placement.rotation);
-    const tool = [turned[0] + placement.x, turned[1] + placement.y];
-    return arms.azimuths
-      .map((azimuth, joint) => {
-        const angle = (this.part.samples.series[`angle ${joint + 1}`][0][i] * Math.PI) / 180;
-        const along = [arms.base, arms.base + arms.upper * Math.cos(angle)].map((r) => this.turn([r, 0], azimuth));
-        const wrist = this.turn([arms.effector, 0], azimuth);
-        const joints = [...along, [wrist[0] + tool[0], wrist[1] + tool[1]]];
-        return joints.map(([x, y], n) => `${n ? "L" : "M"}${this.overlay.pixel(x, y).join(" ")}`).join("");
-      })
-      .join("");
+  toBase(place) {
+    const { x, y, rotation } = this.data.placement;
+    const turned = this.turn(place, rotation);
+    return [turned[0] + x, turned[1] + y];
+  }
+
+  /** Shoulder, elbow and wrist of every arm, in pixels: the elbow lies in the vertical plane of its joint. */
+  arms(i, tool) {
+    const { azimuths, base, upper, effector } = this.data.arms;
+    return azimuths.map((azimuth, joint) => {
+      const angle = (this.part.samples.series[`angle ${joint + 1}`][0][i] * Math.PI) / 180;
+      const wrist = this.turn([effector, 0], azimuth);
+      const along = [base, base + upper * Math.cos(angle)].map((reach) => this.turn([reach, 0], azimuth));
+      return [...along, [wrist[0] + tool[0], wrist[1] + tool[1]]].map(([x, y]) => this.overlay.pixel(x, y));
+    });
   }
 }

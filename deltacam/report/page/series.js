@@ -10,6 +10,7 @@ function unpack({ dtype, bdata }) {
 
 /** A number with four digits, as people write it. */
 function number(value) {
+  if (Math.abs(value) < 5e-4) return "0";
   return String(Number(value.toPrecision(4))).replace("-", "\u2212");
 }
 
