@@ -26,12 +26,10 @@ from deltacam.verification.evidence import Evidence
 from deltacam.verification.kerf_path import ACCURACY
 
 _QUANTITIES: Final = ("angle", "joint speed", "joint acceleration", "joint jerk")
-_MARKUP: Final = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
 
 
-def payload(evidence: Evidence, drawing: Drawing | None) -> tuple[Json, list[Ink]]:
+def payload(evidence: Evidence, drawing: Drawing | None, view: View) -> tuple[Json, list[Ink]]:
     """The data of the page, and the colours that it uses besides the fixed ones of the palette."""
-    view = View.around(evidence, drawing)
     motion = motion_of(evidence)
     nearest = binding(evidence, motion)
     deviation = _deviations(evidence, drawing)
@@ -67,7 +65,8 @@ def payload(evidence: Evidence, drawing: Drawing | None) -> tuple[Json, list[Ink
 
 def to_script(data: Json) -> str:
     """JSON that may stand in a script element: ASCII only, and nothing in it opens or closes an element."""
-    return json.dumps(data, allow_nan=False, separators=(",", ":"), sort_keys=True).translate(_MARKUP)
+    text = json.dumps(data, allow_nan=False, separators=(",", ":"), sort_keys=True)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _deviations(evidence: Evidence, drawing: Drawing | None) -> Array | None:
