@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
 
-from deltacam.model import Array
-from deltacam.verification.checks.contours import Comparison
-from deltacam.verification.checks.measure import length
-from deltacam.verification.evidence import WORKING_KINDS, Evidence
+from deltacam.model import Array, Drawing, IntArray, Operation
+from deltacam.verification.evidence import WORKING_KINDS, Evidence, length
+from deltacam.verification.kerf_path import rings
+from deltacam.verification.near import Lines
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,31 +34,34 @@ def motion_of(evidence: Evidence) -> Motion:
     """The motion of a program; before its first and after its last tick everything stays as it is."""
     q, rate = np.ascontiguousarray(evidence.program.q.T), evidence.rate
     speed, acceleration, jerk = (_differences(q, order) * rate**order for order in (1, 2, 3))
-    tool = np.ascontiguousarray(evidence.tool.T)
-    steps = length(_differences(tool, 1).T)
-    works = evidence.is_kind(frozenset(WORKING_KINDS))[: len(steps)]
-    worked = np.cumsum(np.where(works, steps, 0.0))
+    joints = (q, speed, acceleration, jerk)
+    if not len(evidence.tool):
+        return Motion(joints, *(np.empty(0) for _ in range(3)))
+    works = evidence.is_kind(frozenset(WORKING_KINDS))[:-1]
     return Motion(
-        joints=(q, speed, acceleration, jerk),
-        speed=steps * rate,
-        acceleration=length(_differences(tool, 2).T) * rate**2,
-        worked=np.concatenate([np.zeros(1), worked[:-1]]) if len(worked) else worked,
+        joints,
+        speed=np.append(evidence.speed, 0.0),
+        acceleration=length(_differences(np.ascontiguousarray(evidence.tool.T), 2).T) * rate**2,
+        worked=np.append(0.0, np.cumsum(np.where(works, evidence.speed, 0.0)) / rate),
     )
 
 
-def deviations(comparison: Comparison) -> Array:
+def deviations(evidence: Evidence, drawing: Drawing) -> Array:
     """How far the tool is from the path of the contour that it works on, (N,) m; nan where it works on none.
 
     As in the check of the deviation at ticks, what the reader lost of the drawing counts as distance.
     """
-    evidence = comparison.evidence
-    found = np.full(len(evidence.sheet), np.nan)
-    near = evidence.program.process.tolerance / 2.0
-    for target in comparison.targets:
-        if target.path is not None and target.runs:
-            ticks = np.concatenate([np.arange(run.first, run.end + 1) for run in target.runs])
-            found[ticks] = target.path.distance(evidence.sheet[ticks], exact_above=near)
-    return found + comparison.drawing.conversion_error
+    process, found = evidence.program.process, np.full(len(evidence.sheet), np.nan)
+    spans: defaultdict[tuple[int | None, Operation], list[IntArray]] = defaultdict(list)
+    for run in evidence.runs:
+        spans[run.contour, run.operation].append(np.arange(run.first, run.end + 1))
+    for contour in drawing.contours:
+        done = spans[contour.number, contour.operation]
+        path = rings(contour, process.kerf) if done else ()
+        if path:
+            lines, ticks = Lines(path, closed=contour.curve.closed), np.concatenate(done)
+            found[ticks] = lines.distance(evidence.sheet[ticks], exact_above=process.tolerance / 2.0)
+    return found + drawing.conversion_error
 
 
 def _differences(values: Array, order: int) -> Array:

@@ -21,7 +21,6 @@ from deltacam.report.picture import RAPID, View, bands
 from deltacam.report.samples import Sampling
 from deltacam.report.workspace_figure import workspace_figure
 from deltacam.units import to_mm, to_um
-from deltacam.verification.checks.contours import compare
 from deltacam.verification.evidence import Evidence
 from deltacam.verification.kerf_path import ACCURACY
 
@@ -73,7 +72,7 @@ def _deviations(evidence: Evidence, drawing: Drawing | None) -> Array | None:
     """The deviation at every tick, (N,) m; None where there is nothing that it could be of."""
     if drawing is None or not len(evidence.sheet) or evidence.program.mode is Mode.FRAME:
         return None
-    found = deviations(compare(evidence, drawing))
+    found = deviations(evidence, drawing)
     return found if np.isfinite(found).any() else None
 
 
