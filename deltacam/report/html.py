@@ -17,7 +17,13 @@ from deltacam.verification.evidence import Evidence, gather
 
 
 def to_html(
-    report: Report, program: Program, *, drawing: Drawing | None, title: str, robot: Robot | None = None
+    report: Report,
+    program: Program,
+    *,
+    drawing: Drawing | None,
+    title: str,
+    robot: Robot | None = None,
+    library: str | None = None,
 ) -> str:
     """The report as one HTML page: the verdict, the figures that matter, pictures, charts and tables.
 
@@ -27,9 +33,10 @@ def to_html(
         drawing: what it was compared with, if anything.
         title: of the page, a plain text.
         robot: the machine that it was checked against; None takes the one in the program.
+        library: where a copy of `page.plotly_js` lies, relative to the page; None puts it into the page, 4.8 MB.
 
     Returns:
-        HTML without references to anything outside; the same input gives the same text.
+        HTML that refers to nothing outside, but for the ``library``; the same input gives the same text.
     """
     evidence = gather(program, robot or program.robot)
     verdict = "Not checked" if not report.checks else "Passed" if report.passed else "Failed"
@@ -43,6 +50,7 @@ def to_html(
         f'<p class="verdict">{verdict}</p><p>{_reason(report.checks)}</p></header>\n'
         f"<main>\n{_body(report, evidence, drawing, figures)}</main>\n",
         data=to_script(data),
+        library=library,
     )
 
 

@@ -42,7 +42,7 @@ def part_figure(evidence: Evidence, drawing: Drawing | None, view: View) -> Json
         numbers = [str(number) for number in range(1, len(cuts) + 1)] if len(cuts) < _MOST_NUMBERS else []
         font = {"size": 12, "color": palette.STRONG.light, "weight": 600}
         text = {"mode": "markers+text", "text": numbers, "textposition": "top right", "textfont": font}
-        above.append(dots(starts, palette.STRONG, size=5.5) | (text if numbers else {}))
+        above.append(dots(starts, palette.STRONG, size=5.5 if numbers else 4.0) | (text if numbers else {}))
     return {
         "below": below,
         "above": above,

@@ -38,8 +38,9 @@ def _path(data: Json) -> str:
     """How exactly the path is drawn."""
     if "route" not in data:
         return "The tool has no place at some tick, so that there is no path."
+    order = ", in their order" if any("text" in trace for trace in data["part"]["above"]) else ""
     within = f"The path is drawn within {to_um(data['route']['within'] / 1e3):.3g} µm of the setpoints."
-    return f"{within} Dashed: rapids; dots: where cuts begin, in their order."
+    return f"{within} Dashed: rapids; dots: where cuts begin{order}."
 
 
 def _samples(data: Json) -> str:

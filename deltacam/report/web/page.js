@@ -10,6 +10,7 @@ const CONFIG = {
   modeBarButtons: [["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]],
 };
 const LONGEST_PLAY = 60; // s
+const PAPER = 660; // pixels
 
 /** The words for a sample: a list of names and values. */
 function describe(data, samples, i) {
@@ -164,9 +165,10 @@ class Page {
 
   /** Paper is narrower than a screen, and what is printed is drawn for it. */
   printing() {
-    const widths = (width) => this.views.forEach(({ figure }) => Plotly.relayout(figure, { width, autosize: !width }));
-    window.addEventListener("beforeprint", () => widths(660));
-    window.addEventListener("afterprint", () => widths(null));
+    const each = (size) => this.views.forEach(({ figure }) => Plotly.relayout(figure, size(figure)));
+    const tall = (figure) => (figure.id === "workspace" ? 400 : figure.clientHeight);
+    window.addEventListener("beforeprint", () => each((figure) => ({ width: PAPER, height: tall(figure) })));
+    window.addEventListener("afterprint", () => each(() => ({ width: null, height: null, autosize: true })));
   }
 }
 
