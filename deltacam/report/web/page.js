@@ -51,6 +51,7 @@ class Page {
     this.now = 0;
     this.slider = document.getElementById("time");
     const figure = (name) => document.getElementById(name);
+    this.buttons();
     this.size(figure("part"), figure("workspace"));
     window.addEventListener("resize", () => this.size(figure("part"), figure("workspace")));
     this.part = new Part(figure("part"), data, this.samples, CONFIG);
@@ -63,8 +64,6 @@ class Page {
       this.views.push(new Charts(figure("deviation"), data.deviation, this.samples, worked[0], CONFIG));
     }
     this.views.forEach((view) => this.follow(view));
-    this.buttons();
-    Plotly.Plots.resize(this.workspace.figure);
     this.clock();
     this.places();
     this.printing();
@@ -112,13 +111,17 @@ class Page {
       button.addEventListener("click", () => this.choose(chosen));
       bar.append(button);
     });
-    if (this.data.colourings.length) this.choose(0);
+    if (this.data.colourings.length) this.mark(0);
   }
 
   choose(chosen) {
+    this.mark(chosen);
+    this.part.colour(chosen);
+  }
+
+  mark(chosen) {
     const buttons = document.getElementById("colours").querySelectorAll("button");
     buttons.forEach((button, i) => button.setAttribute("aria-pressed", String(i === chosen)));
-    this.part.colour(chosen);
     legend(document.getElementById("legend"), this.data.colourings[chosen]);
   }
 
