@@ -10,7 +10,7 @@ from deltacam.report import held_back, palette, sections
 from deltacam.report.page import frame
 from deltacam.report.payload import payload, to_script
 from deltacam.report.picture import View, draw, shown
-from deltacam.report.pictures import pictures
+from deltacam.report.slots import slots
 from deltacam.report.tables import table
 from deltacam.robot.robot import Robot
 from deltacam.verification.evidence import Evidence, gather
@@ -42,7 +42,7 @@ def to_html(
     verdict = "Not checked" if not report.checks else "Passed" if report.passed else "Failed"
     view = View.around(evidence, drawing)
     data, inks = payload(evidence, drawing, view)
-    figures = f'<figure class="still">{draw(evidence, drawing, view)}</figure>\n{pictures(data)}'
+    figures = f'<figure class="still">{draw(evidence, drawing, view)}</figure>\n{slots(data)}'
     return frame(
         title=f"{shown(title)}: {verdict.lower()}",
         style=palette.dark_rules(inks),
@@ -70,7 +70,9 @@ def _body(report: Report, evidence: Evidence, drawing: Drawing | None, figures: 
 
 def _reason(checks: Sequence[Check]) -> str:
     """What the verdict rests on, in a sentence."""
-    failed = [check.name for check in checks if not check.passed]
+    failed, warned = ([c.name for c in checks if not c.passed and c.warns is warns] for warns in (False, True))
     if failed:
         return f"{len(failed)} of {len(checks)} checks failed: {shown(', '.join(failed))}."
+    if warned:
+        return f"{len(checks)} checks, {len(warned)} with a warning: {shown(', '.join(warned))}."
     return f"{len(checks)} checks, each within its limit."

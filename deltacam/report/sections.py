@@ -16,6 +16,9 @@ from deltacam.units import to_mm
 from deltacam.verification.evidence import Evidence
 
 _DONE: Final = {Operation.CUT: "cut", Operation.ENGRAVE: "engraved"}
+_PASSED: Final = '<span class="ok">\u2713 passed</span>'
+_WARNED: Final = '<span class="warned">! warning</span>'
+_FAILED: Final = '<span class="bad">\u2717 failed</span>'
 _HANDLES: Final = 3  # of a contour that are named
 
 
@@ -52,10 +55,10 @@ def _shares(shares: Mapping[str, float]) -> str:
 
 
 def checks(found: Sequence[Check], evidence: Evidence) -> str:
-    """The failed checks first, otherwise in their order; where a place is known, a button goes there."""
+    """The failed checks first, then the warnings, otherwise in their order; where a place is known, a button goes there."""
     rows = []
-    for check in sorted(found, key=lambda check: check.passed):
-        verdict = '<span class="ok">\u2713 passed</span>' if check.passed else '<span class="bad">\u2717 failed</span>'
+    for check in sorted(found, key=lambda check: (check.passed, not check.passed and check.warns)):
+        verdict = _PASSED if check.passed else _WARNED if check.warns else _FAILED
         time = "" if check.tick is None else f"{check.tick / evidence.rate:.4f}"
         limit = "no limit" if check.limit is None and check.worst is not None else _number(check.limit)
         numbers = (_number(check.worst), limit, shown(check.unit), time)

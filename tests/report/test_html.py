@@ -105,6 +105,15 @@ def test_the_verdict_comes_first_and_names_what_failed(program: Program) -> None
     assert passed.text_in("title")[0] == "plate: passed"
 
 
+def test_a_warning_is_told_and_does_not_fail_the_program(program: Program) -> None:
+    found = page(replace(REPORT, checks=(CHECKS[0], replace(CHECKS[1], warns=True), CHECKS[2])), program)
+    assert "Passed" in found.text_in("p")
+    assert "3 checks, 1 with a warning: feed while cutting." in found.text_in("p")
+    assert [row["verdict"] for row in found.rows("Checks")] == ["! warning", "\u2713 passed", "\u2713 passed"]
+    both = page(replace(REPORT, checks=(replace(CHECKS[1], warns=True), CHECKS[3])), program)
+    assert [row["check"] for row in both.rows("Checks")] == ["rows", "feed while cutting"]
+
+
 def test_a_report_without_checks_has_not_passed(program: Program) -> None:
     assert "Not checked" in page(Report((), {}), program).text_in("p")
 

@@ -10,7 +10,7 @@ from deltacam.report.palette import BINDING, JOINTS, Ink, css
 from deltacam.units import to_um
 
 
-def pictures(data: Json) -> str:
+def slots(data: Json) -> str:
     """The figures, without what the ``data`` has nothing for; they are hidden where no script runs."""
     return f"""<section class="moving" aria-label="Pictures">
 <div class="pair">
