@@ -84,6 +84,5 @@ def _feed(evidence: Evidence, speed: Array) -> Array:
     """The share of the process's speed while the laser moves along the sheet; 0 elsewhere."""
     process = evidence.program.process
     engraves = evidence.is_kind(frozenset({BlockKind.ENGRAVE}))
-    cuts = evidence.is_kind(MOVING_KINDS) & ~engraves
-    share = np.where(cuts, speed / process.feed, 0.0)
-    return np.where(engraves & (process.engrave_feed is not None), speed / (process.engrave_feed or 1.0), share)
+    feed = np.where(engraves, process.engrave_feed or np.inf, process.feed)
+    return np.where(evidence.is_kind(MOVING_KINDS), speed / feed, 0.0)

@@ -55,7 +55,7 @@ def _shares(shares: Mapping[str, float]) -> str:
 
 
 def checks(found: Sequence[Check], evidence: Evidence) -> str:
-    """The failed checks first, then the warnings, otherwise in their order; where a place is known, a button goes there."""
+    """The failed checks first, then the warnings, else in their order; a button goes to the place where it is known."""
     rows = []
     for check in sorted(found, key=lambda check: (check.passed, not check.passed and check.warns)):
         verdict = _PASSED if check.passed else _WARNED if check.warns else _FAILED

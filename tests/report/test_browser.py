@@ -225,8 +225,12 @@ def test_it_prints(chromium: Browser, shown: Shown) -> None:
     pdf = chromium.pdf()
     assert pdf.startswith(b"%PDF")
     assert len(pdf) > 50_000
-    widths = chromium.run("return ['part', 'motion'].map((id) => document.getElementById(id)._fullLayout.width)")
-    assert all(width > 600 for width in widths)
+    width = "return motion._fullLayout.width"
+    wide = chromium.run(width)
+    chromium.run("window.dispatchEvent(new Event('beforeprint'))")
+    assert chromium.run(width) == 660  # an A4 page has 718 pixels between its margins
+    chromium.run("window.dispatchEvent(new Event('afterprint'))")
+    assert chromium.run(width) == wide > 1000
 
 
 def test_names_in_a_program_do_nothing(chromium: Browser, bench: Bench, tmp_path: Path) -> None:
