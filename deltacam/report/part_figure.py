@@ -23,6 +23,8 @@ EXACT: Final = 1e-6
 
 _MOST_STRETCHES: Final = 12_000
 _MOST_NUMBERS: Final = 60  # cuts that are numbered
+_NUMBER: Final = np.array([0.045, 0.032])  # width and height of a number, of what the starts span
+_SIDES: Final = {"top right": (1, 1), "bottom right": (1, -1), "top left": (-1, 1), "bottom left": (-1, -1)}
 
 
 def part_figure(evidence: Evidence, drawing: Drawing | None, view: View) -> Json:
@@ -39,10 +41,8 @@ def part_figure(evidence: Evidence, drawing: Drawing | None, view: View) -> Json
     cuts = [run.first for run in evidence.runs if run.operation is Operation.CUT]
     if len(evidence.sheet) and cuts:
         starts = to_mm(1.0) * evidence.sheet[cuts]
-        numbers = [str(number) for number in range(1, len(cuts) + 1)] if len(cuts) < _MOST_NUMBERS else []
-        font = {"size": 12, "color": palette.STRONG.light, "weight": 600}
-        text = {"mode": "markers+text", "text": numbers, "textposition": "top right", "textfont": font}
-        above.append(dots(starts, palette.STRONG, size=5.5 if numbers else 4.0) | (text if numbers else {}))
+        few = len(cuts) < _MOST_NUMBERS
+        above.append(dots(starts, palette.STRONG, size=5.5 if few else 4.0) | (_numbers(starts) if few else {}))
     return {
         "below": below,
         "above": above,
@@ -50,6 +50,25 @@ def part_figure(evidence: Evidence, drawing: Drawing | None, view: View) -> Json
         "dots": palette.STRONG.light,
         "layout": map_layout(to_mm(1.0) * view.box),
     }
+
+
+def _numbers(starts: Array) -> Json:
+    """The place of every cut in the order, beside its start where no other number is in the way; else it has none.
+
+    The distance that two numbers need is a share of what the starts span, for a picture that shows the whole part.
+    """
+    room = _NUMBER * max(float(np.ptp(starts, axis=0).max()), 1e-9)
+    taken, text, sides = np.empty((0, 2)), [], []
+    for number, start in enumerate(starts, start=1):
+        middles = start + np.array([_SIDES[side] for side in _SIDES]) * room / 2.0
+        gaps = np.abs(middles[:, None] - taken[None]) / room
+        free = ~(gaps < 1.0).all(axis=2).any(axis=1)
+        side = int(np.argmax(free))
+        text.append(str(number) if free[side] else "")
+        sides.append(list(_SIDES)[side])
+        taken = np.concatenate([taken, middles[side : side + 1]]) if free[side] else taken
+    font = {"size": 12, "color": palette.STRONG.light, "weight": 600}
+    return {"mode": "markers+text", "text": text, "textposition": sides, "textfont": font}
 
 
 def route(evidence: Evidence, colourings: Sequence[Colouring], view: View, *, exact: bool) -> Json:

@@ -50,6 +50,7 @@ class Browser:
     def open(self, page: Path, *, width: int = 1280, dark: bool = False) -> None:
         size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600}
         self.command("Emulation.setDeviceMetricsOverride", **size)
+        self.command("Emulation.setTouchEmulationEnabled", enabled=width < 600)
         scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
         self.command("Emulation.setEmulatedMedia", features=scheme)
         self.problems()
@@ -72,7 +73,7 @@ class Browser:
 
     def point(self, figure: str, x: float, y: float | None = None) -> dict[str, str]:
         """Move the mouse to a place of a figure, in the units of its axes; what the words beside it say."""
-        left, top = self.run(_PLACE, figure, x, y)
+        left, top = self.run(PLACE, figure, x, y)
         self.command("Input.dispatchMouseEvent", type="mouseMoved", x=left, y=top)
         return self.words()
 
@@ -86,7 +87,7 @@ class Browser:
     def drag(self, figure: str, start: float, end: float) -> None:
         """Press the mouse at a time, move it to another one, and let go."""
         for kind, x in (("mousePressed", start), ("mouseMoved", end), ("mouseReleased", end)):
-            left, top = self.run(_PLACE, figure, x, None)
+            left, top = self.run(PLACE, figure, x, None)
             event = {"type": kind, "x": left, "y": top, "button": "left", "buttons": 1, "clickCount": 1}
             self.command("Input.dispatchMouseEvent", **event)
 
@@ -106,7 +107,7 @@ document.addEventListener("securitypolicyviolation", (event) => {
 window.alert = window.confirm = window.prompt = () => { window.dialogs += 1; };
 """
 
-_PLACE = """
+PLACE = """
 const figure = document.getElementById(arguments[0]);
 figure.scrollIntoView({block: "center", behavior: "instant"});
 const {xaxis, yaxis, _size} = figure._fullLayout;

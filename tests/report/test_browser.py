@@ -143,7 +143,7 @@ def test_zooming_into_a_time_shows_every_setpoint(chromium: Browser, shown: Show
 def test_scrolling_zooms_the_part_until_its_setpoints_are_seen(chromium: Browser, shown: Shown) -> None:
     chromium.open(shown.path)
     x, y = 1e3 * shown.evidence.sheet[shown.evidence.runs[1].first + 40]
-    left, top = chromium.run(browsers._PLACE, "part", float(x), float(y))
+    left, top = chromium.run(browsers.PLACE, "part", float(x), float(y))
     before = np.ptp(ranges(chromium, "part"))
     dots = "return part.data.find((trace) => trace.marker?.size === 3.5).x.length"
     assert chromium.run(dots) == 0
@@ -199,6 +199,22 @@ def test_no_width_makes_the_page_scroll_sideways(chromium: Browser, shown: Shown
     assert chromium.run("return document.documentElement.scrollWidth") <= width
     for figure in FIGURES:
         assert chromium.run(f"return {figure}.querySelector('.main-svg').clientWidth") <= width, figure
+
+
+def test_a_swipe_is_left_to_the_page_and_a_tap_tells_the_values(chromium: Browser, shown: Shown) -> None:
+    chromium.open(shown.path, width=390)
+    left, top = chromium.run(browsers.PLACE, "motion", 2.0, None)
+    touch = """
+    const under = document.elementFromPoint(arguments[0], arguments[1]);
+    const at = {identifier: 1, target: under, clientX: arguments[0], clientY: arguments[1]};
+    const event = {touches: [new Touch(at)], bubbles: true, cancelable: true};
+    return [under.getAttribute("class"), under.dispatchEvent(new TouchEvent("touchstart", event))];
+    """
+    under, left_alone = chromium.run(touch, left, top)
+    assert "drag" in under
+    assert left_alone
+    chromium.command("Input.synthesizeTapGesture", x=left, y=top)
+    assert abs(int(chromium.words()["tick"]) - 800) < 12
 
 
 def test_in_the_dark_every_text_is_light_and_in_the_light_dark(chromium: Browser, shown: Shown) -> None:

@@ -90,6 +90,8 @@ class Page {
     };
     view.figure.addEventListener("pointermove", point);
     view.figure.addEventListener("pointerdown", point);
+    // A swipe moves the page, not the picture, whose buttons zoom: plotly.js would take every touch.
+    view.figure.addEventListener("touchstart", (event) => event.stopPropagation(), { capture: true, passive: true });
     view.figure.addEventListener("pointerleave", () => this.tip.hide());
     for (const name of ["plotly_afterplot", "plotly_relayouting"]) view.figure.on(name, () => view.draw(this.now));
     view.draw(this.now);
