@@ -161,6 +161,23 @@ def test_holes_are_left_out_of_the_material(bench: Bench) -> None:
     assert turns == [not contour.is_hole for contour in bench.drawing.contours]
 
 
+def test_numbers_that_would_lie_on_each_other_go_around_their_dot_or_are_left_out(bench: Bench) -> None:
+    program = bench.program()
+    again = replace(program, **{name: np.concatenate([getattr(program, name)] * 6) for name in ("q", "power", "block")})
+    data, _ = made(again, bench.drawing)
+    (numbers,) = data["part"]["above"]
+    shown = [
+        (x, y, side)
+        for x, y, side, text in zip(
+            unpacked(numbers["x"]), unpacked(numbers["y"]), numbers["textposition"], numbers["text"], strict=True
+        )
+        if text
+    ]
+    assert numbers["text"][:4] == ["1", "2", "3", "4"]
+    assert len(numbers["text"]) == 24
+    assert 8 <= len(shown) == len(set(shown)) <= 16
+
+
 def test_the_machine_is_seen_whole_with_the_part_where_it_is_placed(bench: Bench) -> None:
     program = bench.program()
     evidence = gather(program, program.robot)

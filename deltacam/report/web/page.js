@@ -64,6 +64,7 @@ class Page {
       this.views.push(new Charts(figure("deviation"), data.deviation, this.samples, worked[0], CONFIG));
     }
     this.views.forEach((view) => this.follow(view));
+    document.addEventListener("pointerdown", (event) => event.target.closest(".plot") || this.tip.hide());
     this.clock();
     this.places();
     this.printing();
@@ -92,7 +93,8 @@ class Page {
     view.figure.addEventListener("pointerdown", point);
     // A swipe moves the page, not the picture, whose buttons zoom: plotly.js would take every touch.
     view.figure.addEventListener("touchstart", (event) => event.stopPropagation(), { capture: true, passive: true });
-    view.figure.addEventListener("pointerleave", () => this.tip.hide());
+    // A finger leaves when it is lifted; what it asked for stays until it asks elsewhere.
+    view.figure.addEventListener("pointerleave", (event) => event.pointerType === "touch" || this.tip.hide());
     for (const name of ["plotly_afterplot", "plotly_relayouting"]) view.figure.on(name, () => view.draw(this.now));
     view.draw(this.now);
   }
