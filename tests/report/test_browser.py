@@ -206,8 +206,8 @@ def test_a_swipe_is_left_to_the_page_and_a_tap_tells_the_values(chromium: Browse
     left, top = chromium.run(browsers.PLACE, "motion", 2.0, None)
     touch = """
     const under = document.elementFromPoint(arguments[0], arguments[1]);
-    const at = {identifier: 1, target: under, clientX: arguments[0], clientY: arguments[1]};
-    const event = {touches: [new Touch(at)], bubbles: true, cancelable: true};
+    const fingers = [new Touch({identifier: 1, target: under, clientX: arguments[0], clientY: arguments[1]})];
+    const event = {touches: fingers, changedTouches: fingers, bubbles: true, cancelable: true};
     return [under.getAttribute("class"), under.dispatchEvent(new TouchEvent("touchstart", event))];
     """
     under, left_alone = chromium.run(touch, left, top)
