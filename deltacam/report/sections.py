@@ -13,6 +13,7 @@ from deltacam.program.program import Program
 from deltacam.report.picture import shown, tool_speeds
 from deltacam.report.tables import table
 from deltacam.units import to_mm
+from deltacam.verification.checks.measure import DIFFERENCES
 from deltacam.verification.evidence import Evidence
 
 _DONE: Final = {Operation.CUT: "cut", Operation.ENGRAVE: "engraved"}
@@ -48,7 +49,8 @@ def _shares(shares: Mapping[str, float]) -> str:
     """How much of each limit is used at most, as bars."""
     cells = "".join(
         f"<div><dt>{shown(name)}</dt><dd>{100 * share:.0f} % "
-        f'<i><b style="width:{min(max(100 * share, 0), 100):.0f}%"></b></i></dd></div>'
+        f'<i><b{" class=over" if share > DIFFERENCES else ""} style="width:{min(max(100 * share, 0), 100):.0f}%"></b></i>'
+        "</dd></div>"
         for name, share in shares.items()
     )
     return f'<dl class="shares" aria-label="Largest share of each limit">{cells}</dl>\n' if cells else ""

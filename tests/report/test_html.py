@@ -114,6 +114,16 @@ def test_a_warning_is_told_and_does_not_fail_the_program(program: Program) -> No
     assert [row["check"] for row in both.rows("Checks")] == ["rows", "feed while cutting"]
 
 
+def test_the_bar_of_a_limit_that_is_exceeded_is_marked(program: Program) -> None:
+    shares = {"joint speed": 0.5, "tool speed": 1.001, "feed while cutting": 1.9}
+    bars = page(replace(REPORT, summary={"share_of_limit": shares}), program).all_of("b")
+    assert [(bar["style"], bar.get("class")) for bar in bars] == [
+        ("width:50%", None),
+        ("width:100%", None),
+        ("width:100%", "over"),
+    ]
+
+
 def test_a_report_without_checks_has_not_passed(program: Program) -> None:
     assert "Not checked" in page(Report((), {}), program).text_in("p")
 
