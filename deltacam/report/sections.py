@@ -47,13 +47,12 @@ def tiles(summary: Mapping[str, Any], program: Program) -> str:
 
 def _shares(shares: Mapping[str, float]) -> str:
     """How much of each limit is used at most, as bars."""
-    cells = "".join(
-        f"<div><dt>{shown(name)}</dt><dd>{100 * share:.0f} % "
-        f'<i><b{" class=over" if share > DIFFERENCES else ""} style="width:{min(max(100 * share, 0), 100):.0f}%"></b></i>'
-        "</dd></div>"
-        for name, share in shares.items()
-    )
-    return f'<dl class="shares" aria-label="Largest share of each limit">{cells}</dl>\n' if cells else ""
+    cells = []
+    for name, share in shares.items():
+        percent, over = 100.0 * share, ' class="over"' if share > DIFFERENCES else ""
+        bar = f'<i><b{over} style="width:{min(max(percent, 0.0), 100.0):.0f}%"></b></i>'
+        cells.append(f"<div><dt>{shown(name)}</dt><dd>{percent:.0f} % {bar}</dd></div>")
+    return f'<dl class="shares" aria-label="Largest share of each limit">{"".join(cells)}</dl>\n' if cells else ""
 
 
 def checks(found: Sequence[Check], evidence: Evidence) -> str:
