@@ -12,7 +12,7 @@ from deltacam.pipeline import plan
 from deltacam.report.picture import to_svg
 
 SAMPLES: Final = Path(__file__).parents[1] / "samples"
-FEEDS: Final = {"bracket": 0.5, "gear": 0.15}  # m/s
+FEEDS: Final = {"gear": 0.15}  # m/s
 
 
 def main() -> None:

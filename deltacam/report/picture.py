@@ -18,6 +18,8 @@ from deltacam.geometry.pack import Pack
 from deltacam.model import Array, BlockKind, Drawing, IntArray, Operation
 from deltacam.plain import plain
 from deltacam.program.program import Program
+from deltacam.report.palette import speeds
+from deltacam.report.stretches import most_unusual, stretches
 from deltacam.report.thin import thin_lines
 from deltacam.robot.workspace import Workspace
 from deltacam.units import to_mm, to_um
@@ -31,8 +33,8 @@ _ERROR: Final = 1 / 6000  # of the part: how far a drawn path may leave the setp
 _MAX_RUNS: Final = 12_000  # stretches of one colour
 _MAX_NUMBERS: Final = 60  # cuts that are numbered
 _SHEET_SHOWN: Final = 1.4  # how many times smaller the sheet may make the part
-_RAPID, _ENGRAVED, _SUBJECT = range(3)  # what a step is in the picture; the subject is coloured by speed
-_VIRIDIS: Final = ("440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725")
+RAPID, ENGRAVED, SUBJECT = range(3)
+"""What a step is in the picture: the subject is what is coloured."""
 _STYLE: Final = """
 .dc{--paper:#fff;--ink:#1f2328;--soft:#59636e;--line:#818b98;--part:#eaeef2;--edge:#d1d9e0;--mark:#bf3989;LIGHT}
 @media screen and (prefers-color-scheme:dark){
@@ -54,19 +56,19 @@ def to_svg(program: Program, *, drawing: Drawing | None) -> str:
         an SVG document for a file of its own or inside a page; the same program gives the same text. ``desc`` says
         within how much the path is drawn.
     """
-    return draw(gather(program, program.robot), drawing)
+    evidence = gather(program, program.robot)
+    return draw(evidence, drawing, View.around(evidence, drawing))
 
 
-def draw(evidence: Evidence, drawing: Drawing | None) -> str:
+def draw(evidence: Evidence, drawing: Drawing | None, view: View) -> str:
     """As `to_svg`, of evidence that was gathered already."""
-    view = _View.around(evidence, drawing)
     step, colours, parts = 1.0, 1, [_drawn(drawing, view)]
     if len(evidence.sheet) > 1:
-        band = _bands(evidence)
+        band = bands(evidence)
         speed = tool_speeds(evidence)
-        cut = speed[band == _SUBJECT]
+        cut = speed[band == SUBJECT]
         step, colours = speed_colours(cut) if len(cut) else (1.0, 0)
-        parts += [_paths(evidence.sheet, band, _colour(speed, step, colours), view), _starts(evidence, view)]
+        parts += [_paths(evidence.sheet, band, colours_of(speed, step, colours), view), _starts(evidence, view)]
     about = evidence.impossible[1] or f"path within {to_um(view.error) + 1.0:.0f} µm of the setpoints"
     height = view.height + _FOOTER
     return (
@@ -88,7 +90,7 @@ def tool_speeds(evidence: Evidence) -> Array:
     return to_mm(1.0) * evidence.speed
 
 
-def _bands(evidence: Evidence) -> IntArray:
+def bands(evidence: Evidence) -> IntArray:
     """What each step is, (N - 1,): a rapid, engraved, or the subject: the cuts.
 
     Where nothing is cut and nothing engraved, as in a frame, the subject is the whole way.
@@ -96,7 +98,7 @@ def _bands(evidence: Evidence) -> IntArray:
     steps = max(len(evidence.tool) - 1, 0)
     on = (evidence.is_kind(LASER_KINDS) | (evidence.program.power > 0.0))[:steps]
     engraved = evidence.is_kind(frozenset({BlockKind.ENGRAVE}))[:steps]
-    return np.where(engraved, _ENGRAVED, np.where(on | (not on.any()), _SUBJECT, _RAPID))
+    return np.where(engraved, ENGRAVED, np.where(on | (not on.any()), SUBJECT, RAPID))
 
 
 def _engraves(evidence: Evidence) -> bool:
@@ -108,28 +110,23 @@ def speed_colours(speed: Array) -> tuple[float, int]:
     top = max(float(speed.max(initial=0.0)), 1.0)
     power = 10.0 ** math.floor(math.log10(top / 14.0))
     step = next(power * factor for factor in (1.0, 2.0, 2.5, 5.0, 10.0) if power * factor * 14.0 >= top * (1.0 - 1e-9))
-    return step, int(_colour(np.array([top]), step, 15)[0]) + 1
+    return step, int(colours_of(np.array([top]), step, 15)[0]) + 1
 
 
-def _colour(speed: Array, step: float, count: int) -> IntArray:
+def colours_of(speed: Array, step: float, count: int) -> IntArray:
     """The colour of each speed: a round speed, and also one that is half a step off, is well inside a colour."""
     return np.minimum(np.floor(speed / step + 0.53).astype(np.int64), count - 1)
 
 
 def _style(colours: int) -> str:
-    """The style sheet: the part of the ramp that is dark enough on light paper, light enough on dark."""
-    anchors = np.array([[int(colour[i : i + 2], 16) for i in (0, 2, 4)] for colour in _VIRIDIS])
-
-    def ramp(first: float, last: float) -> str:
-        at = np.linspace(first, last, colours) * (len(anchors) - 1)
-        rgb = np.column_stack([np.interp(at, np.arange(len(anchors)), anchors[:, i]) for i in range(3)])
-        return "".join("--c{}:#{:02x}{:02x}{:02x};".format(i, *row) for i, row in enumerate(rgb.round().astype(int)))
-
-    return _STYLE.replace("LIGHT", ramp(0.0, 0.8)).replace("DARK", ramp(0.28, 1.0))
+    """The style sheet with the colours of the speeds."""
+    inks = speeds(colours)
+    light, dark = ("".join(f"--c{i}:{ink[shade]};" for i, ink in enumerate(inks)) for shade in range(2))
+    return _STYLE.replace("LIGHT", light).replace("DARK", dark)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _View:
+class View:
     """What is shown of the sheet frame, and where.
 
     Attributes:
@@ -139,6 +136,7 @@ class _View:
         height: pixels.
         origin: where x = y = 0 lies, pixels.
         sheet: the sheet's edge, (K, 2) m; empty where it is not shown.
+        box: the lower left and the upper right corner of all that is shown, (2, 2) m.
     """
 
     caption: str
@@ -147,17 +145,20 @@ class _View:
     height: float
     origin: tuple[float, float]
     sheet: Array
+    box: Array
 
     @classmethod
-    def around(cls, evidence: Evidence, drawing: Drawing | None) -> _View:
+    def around(cls, evidence: Evidence, drawing: Drawing | None) -> View:
+        """Room for the part, everything that is worked, and the sheet where it is not much larger."""
         boxes = Pack.of(contour.curve for contour in drawing.contours).bounds() if drawing else np.zeros((0, 4))
-        subject = _bands(evidence) != _RAPID
+        subject = bands(evidence) != RAPID
         places = (
             evidence.sheet[np.append(subject, False) | np.append(False, subject)] if len(subject) else evidence.sheet
         )
-        part = boxes.reshape(-1, 2) if len(boxes) else places if len(places) else np.zeros((1, 2))
+        places = _corners(places)
+        part = _corners(boxes.reshape(-1, 2)) if len(boxes) else places if len(places) else np.zeros((1, 2))
         width, depth = np.ptp(part, axis=0)
-        seen, sheet = np.vstack([part, places]), to_sheet(evidence.program, _sheet_edge(evidence.robot.workspace))
+        seen, sheet = np.vstack([part, places]), to_sheet(evidence.program, sheet_edge(evidence.robot.workspace))
         if _scale(seen) > _SHEET_SHOWN * _scale(np.vstack([seen, sheet])):
             sheet = np.zeros((0, 2))
         seen = np.vstack([seen, sheet])
@@ -165,7 +166,8 @@ class _View:
         height = max(float(extent[1]) * scale, 120.0) + 2 * _MARGIN
         x, y = ((_WIDTH, height) + np.array((-1.0, 1.0)) * (2.0 * low + extent) * scale) / 2.0
         caption = f"{'part' if len(boxes) else 'path'} {to_mm(width):.2f} \u00d7 {to_mm(depth):.2f} mm"
-        return cls(caption, _ERROR * max(width, depth, 1e-3), scale, height, (float(x), float(y)), sheet)
+        error, box = _ERROR * max(width, depth, 1e-3), np.stack([low, low + extent])
+        return cls(caption, error, scale, height, (float(x), float(y)), sheet, box)
 
     def path(self, lines: Sequence[Array], *, width: float, style: str) -> str:
         """A path of polylines (K, 2) m as relative moves, without the points that it can spare."""
@@ -180,13 +182,21 @@ class _View:
         return f'<path {place} {style} stroke-width="{width / k:.4g}" d="{moves.replace(" -", "-")}"/>'
 
 
+def _corners(points: Array) -> Array:
+    """The lower left and the upper right corner of ``points``, (2, 2) m; nothing of nothing."""
+    if not len(points):
+        return points
+    x, y = np.ascontiguousarray(points.T)  # a column after the other is several times as fast
+    return np.array([[x.min(), y.min()], [x.max(), y.max()]])
+
+
 def _scale(points: Array) -> float:
     """The pixels per metre at which the points fill the picture."""
     width, height = np.maximum(np.ptp(points, axis=0), 1e-3)
     return float(min((_WIDTH - 2 * _MARGIN) / width, _TALLEST / height))
 
 
-def _sheet_edge(sheet: Workspace) -> Array:
+def sheet_edge(sheet: Workspace) -> Array:
     """The edge of the sheet in the base frame, (K, 2) m."""
     if sheet.radius is not None:
         turn = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
@@ -194,7 +204,7 @@ def _sheet_edge(sheet: Workspace) -> Array:
     return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * (sheet.width or 0.0, sheet.depth or 0.0) / 2.0
 
 
-def _drawn(drawing: Drawing | None, view: _View) -> str:
+def _drawn(drawing: Drawing | None, view: View) -> str:
     """The sheet's edge and the contours, the material between them filled."""
     sheet = [np.vstack([view.sheet, view.sheet[:1]])] if len(view.sheet) else []
     edges: list[Array] = []
@@ -211,9 +221,12 @@ def _drawn(drawing: Drawing | None, view: _View) -> str:
     )
 
 
-def _paths(xy: Array, band: IntArray, colour: IntArray, view: _View) -> str:
+def _paths(xy: Array, band: IntArray, colour: IntArray, view: View) -> str:
     """The rapids as one dashed path, one of what is engraved, then a path per colour, the short slow ones on top."""
-    first, kind = _stretches(xy, band, colour, view.error * 3.0)
+    subject = band == SUBJECT
+    usual = float(np.median(colour[subject])) if subject.any() else 0.0
+    colour = np.where(subject, colour, band - SUBJECT)
+    first, (kind,) = stretches(xy, band, [most_unusual(colour, usual)], reach=view.error * 3.0, most=_MAX_RUNS)
     lines = [xy[start : end + 1] for start, end in zip(first, np.append(first[1:], len(band)), strict=True)]
 
     def drawn(of_kind: int, width: float, style: str) -> str:
@@ -221,36 +234,14 @@ def _paths(xy: Array, band: IntArray, colour: IntArray, view: _View) -> str:
         return view.path(chosen, width=width, style=f'{style} fill="none"')
 
     dash = f'stroke="var(--line)" stroke-dasharray="{5e6 / view.per_metre:.4g}"'
-    parts = [drawn(_RAPID - _SUBJECT, 0.8, f'class="rapid" {dash}')]
-    parts.append(drawn(_ENGRAVED - _SUBJECT, 1.6, 'class="engraved" stroke="var(--mark)" stroke-linecap="round"'))
+    parts = [drawn(RAPID - SUBJECT, 0.8, f'class="rapid" {dash}')]
+    parts.append(drawn(ENGRAVED - SUBJECT, 1.6, 'class="engraved" stroke="var(--mark)" stroke-linecap="round"'))
     values = range(int(kind.max(initial=-1)), -1, -1)
     parts += [drawn(one, 2.0, f'class="speed" stroke="var(--c{one})" stroke-linecap="round"') for one in values]
     return "".join(parts)
 
 
-def _stretches(xy: Array, band: IntArray, colour: IntArray, reach: float) -> tuple[IntArray, IntArray]:
-    """Where the way changes colour: the first step of every stretch, and its colour, negative for other bands.
-
-    Steps within ``reach`` m of the way share a colour, that of the most unusual speed among them, so that no short stop
-    or burst is lost; where there are very many stretches it grows until they are fewer.
-    """
-    subject = band == _SUBJECT
-    usual = np.median(colour[subject]) if subject.any() else 0.0
-    steps = np.hypot(*np.diff(xy, axis=0).T)
-    first, kind = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    for doubling in range(12):
-        cell = np.floor((np.cumsum(steps) - steps) / (reach * 2.0**doubling))
-        first = np.flatnonzero((np.diff(cell, prepend=-1.0) != 0.0) | (np.diff(band, prepend=-1) != 0))
-        slow, fast = np.minimum.reduceat(colour, first), np.maximum.reduceat(colour, first)
-        kind = np.where(subject[first], np.where(fast - usual > usual - slow, fast, slow), band[first] - _SUBJECT)
-        change = np.diff(kind, prepend=-_SUBJECT - 1) != 0
-        first, kind = first[change], kind[change]
-        if len(first) <= _MAX_RUNS:
-            break
-    return first, kind
-
-
-def _starts(evidence: Evidence, view: _View) -> str:
+def _starts(evidence: Evidence, view: View) -> str:
     """A dot where each cut begins, with its place in the order while there is room for numbers."""
     parts, cuts = [], [run for run in evidence.runs if run.operation is Operation.CUT]
     for number, run in enumerate(cuts, start=1):
@@ -262,7 +253,7 @@ def _starts(evidence: Evidence, view: _View) -> str:
     return "".join(parts)
 
 
-def _footer(view: _View, step: float, colours: int, *, engraved: bool) -> str:
+def _footer(view: View, step: float, colours: int, *, engraved: bool) -> str:
     """The size, a scale bar, and what the colours and lines stand for."""
     power = 10.0 ** math.floor(math.log10(150.0 / view.per_metre))
     bar = max(power * factor for factor in (1.0, 2.0, 5.0) if power * factor * view.per_metre <= 150.0)

@@ -27,6 +27,17 @@ def thin_lines(lines: Sequence[Array], tolerance: float) -> list[Array]:
     return found
 
 
+def thin_way(points: Array, fixed: BoolArray, tolerance: float) -> BoolArray:
+    """As `thin`, for a way that may be very long: some further points stay so that the memory is bounded."""
+    kept = np.zeros(len(points), dtype=bool)
+    for first in range(0, max(len(points) - 1, 1), _BATCH):
+        part = slice(first, first + _BATCH + 1)
+        ends = fixed[part].copy()
+        ends[[0, -1]] = True
+        kept[part] |= thin(points[part], ends, tolerance)
+    return kept
+
+
 def thin(points: Array, fixed: BoolArray, tolerance: float) -> BoolArray:
     """Which points are enough to draw a polyline within ``tolerance`` m (Ramer 1972; Douglas and Peucker 1973).
 

@@ -1,0 +1,76 @@
+"""The ways in which the path of the tool is coloured: by speed, by deviation, by the nearest limit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from deltacam.model import Array, IntArray
+from deltacam.report import palette
+from deltacam.report.binding import LIMITS, NEAR, Binding, limit_of
+from deltacam.report.palette import Ink
+from deltacam.report.picture import colours_of, speed_colours
+from deltacam.report.stretches import Choice, largest, most_unusual
+from deltacam.units import to_mm, to_um
+
+_LEVELS: Final = 8  # of deviation, up to the limit
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Colouring:
+    """One way of colouring the steps of the tool's path.
+
+    Attributes:
+        name: on its button.
+        title: of its legend.
+        inks: the colours, in the order of the legend.
+        labels: of the colours; an empty one is not in the legend.
+        choice: which of them stands for several steps.
+        ramp: whether the colours are in the order of a quantity.
+    """
+
+    name: str
+    title: str
+    inks: Sequence[Ink]
+    labels: Sequence[str]
+    choice: Choice
+    ramp: bool = True
+
+
+def by_speed(speed: Array, subject: np.ndarray) -> Colouring:
+    """The speed of every step, (M,) m/s; the colours are for the steps that are the ``subject``, (M,)."""
+    values = to_mm(1.0) * speed
+    step, count = speed_colours(values[subject]) if subject.any() else (1.0, 1)
+    colour = np.where(subject, colours_of(values, step, count), 0)
+    usual = float(np.median(colour[subject])) if subject.any() else 0.0
+    labels = [f"{step * i:g}" for i in range(count)]
+    return Colouring("Speed", "tool speed, mm/s", palette.speeds(count), labels, most_unusual(colour, usual))
+
+
+def by_deviation(deviation: Array, tolerance: float, limit: float) -> Colouring:
+    """The deviation of every step, (M,) m, nan where it is not known: levels up to the tolerance, m.
+
+    What is over the ``limit``, which is the tolerance and what rounding may add, m, has a colour of its own.
+    """
+    known = np.isfinite(deviation)
+    level = np.clip(np.ceil(np.where(known, deviation, 0.0) * (_LEVELS / tolerance)), 1, _LEVELS)
+    colour = np.where(known, np.where(deviation > limit, _LEVELS + 1, level.astype(np.int64)), 0)
+    step = to_um(tolerance) / _LEVELS
+    over = f"over {to_um(tolerance):.3g}" if (colour > _LEVELS).any() else ""
+    labels = ["", *(f"{step * (i + 1):.3g}" for i in range(_LEVELS)), over]
+    inks = [palette.BINDING[-1], *palette.deviations(_LEVELS), palette.OVER]
+    return Colouring("Deviation", "deviation up to, µm", inks, labels, largest(colour))
+
+
+def by_limit(nearest: Binding) -> Colouring:
+    """The limit that is nearest at every step."""
+    ranked = nearest.ranked()
+
+    def choose(first: IntArray) -> IntArray:
+        return limit_of(np.maximum.reduceat(ranked[:-1], first))
+
+    labels = [*LIMITS, f"none near ({100 * NEAR:.0f} %)"]
+    return Colouring("Limit", "nearest limit", palette.BINDING, labels, choose, ramp=False)
