@@ -145,7 +145,9 @@ def pierced_in_part(case: Example, amount: float, chance: np.random.Generator) -
     todo, index, cut = _some_cut(case, chance)
     if case.program.process.pierce_time == 0.0:
         raise NoPlaceError
-    points = _into_part(case, cut, amount * case.program.process.tolerance)
+    here = np.array([cut.block.first])
+    distance = amount * case.program.process.tolerance + float(case.off_path(here, case.tool[here])[0])
+    points = _into_part(case, cut, distance)
     lead = Stretch(replace(cut.block, kind=BlockKind.LEAD_IN), along(case.program, points[::-1]), cut.power)
     pierce = todo[index][0]
     todo[index] = (replace(pierce, q=np.repeat(lead.q[:1], len(pierce.q), axis=0)), lead, cut)
@@ -190,7 +192,7 @@ def _gone_on(case: Example, cut: Stretch, distance: float) -> Stretch:
         raise NoPlaceError
     samples = np.append(way[way < distance], distance)
     onwards = np.stack([np.interp(samples, way, column) for column in points.T], axis=1)
-    extra = along(case.program, np.concatenate([onwards, onwards[-2::-1]]), 0.5 * case.program.process.feed)
+    extra = along(case.program, np.concatenate([onwards, onwards[-2::-1]]), 0.2 * case.program.process.feed)
     return replace(cut, q=np.concatenate([cut.q, extra[1:]]))
 
 

@@ -77,6 +77,14 @@ def pierce_shortened(case: Example, amount: float, chance: np.random.Generator) 
     return _without(case, slice(block.first, block.first + count))
 
 
+def pierced_too_long(case: Example, amount: float, chance: np.random.Generator) -> Program:
+    """A pierce that takes longer than the process says and 20 ms, by this factor."""
+    block = _block(case, (BlockKind.PIERCE,), chance)
+    needed = int(np.ceil(amount * (case.program.process.pierce_time + 0.02) * case.rate)) + 1
+    more = needed - (block.last - block.first + 1)
+    return gathered(case.program, np.insert(np.arange(len(case.program.q)), block.first, [block.first] * more))
+
+
 def not_pierced(case: Example, amount: float, chance: np.random.Generator) -> Program:
     """So many cuts without their pierces."""
     pierces = [block for block in case.program.blocks if block.kind is BlockKind.PIERCE]

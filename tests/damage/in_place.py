@@ -25,13 +25,13 @@ def beside_path(case: Example, amount: float, chance: np.random.Generator) -> Pr
     row = int(chance.choice(case.rows(*WORKING)))
     angle = chance.uniform(0.0, 2.0 * np.pi)
     way = np.array([[np.cos(angle), np.sin(angle), 0.0]])
-    return _moved(case, np.array([row]), way, 0, amount)
+    return _moved(case, np.array([row]), way, amount)
 
 
 def bulge(case: Example, amount: float, chance: np.random.Generator) -> Program:
     """Twenty setpoints moved smoothly to one side, to so many tolerances from the path."""
     rows, way = _bump(case, chance)
-    return _moved(case, rows, way, len(rows) // 2, amount)
+    return _moved(case, rows, way, amount)
 
 
 def into_the_part(name: str) -> Make:
@@ -42,10 +42,9 @@ def into_the_part(name: str) -> Make:
         check = case.checks[name]
         if check.limit is None or not case.contour(int(rows[0])).has_kerf:
             raise NoPlaceError
-        middle = len(rows) // 2
-        to_line = _to_line(case, rows[middle : middle + 1])[0]
-        sign = np.sign(float(np.dot(to_line, way[middle]))) or 1.0
-        size = amount * check.limit * 1e-6 + case.program.process.tolerance
+        here = rows[[BUMP // 2]]
+        sign = np.sign(float(np.dot(_to_line(case, here)[0], way[BUMP // 2]))) or 1.0
+        size = amount * check.limit * MICROMETRE + float(case.off_path(here, case.tool[here])[0])
         return at_points(case.program, rows, case.tool[rows] + size * sign * way)
 
     return make
@@ -79,7 +78,7 @@ def size_off(name: str) -> Make:
         if check.limit is None:
             raise NoPlaceError
         step = _to_line(case, rows)
-        distance = (amount * check.limit + abs(check.worst or 0.0)) * 1e-6
+        distance = (amount * check.limit + abs(check.worst or 0.0)) * MICROMETRE
         step *= distance / np.linalg.norm(step, axis=1, keepdims=True)
         return at_points(case.program, rows, case.tool[rows] + step)
 
@@ -129,7 +128,7 @@ def off_the_sheet(case: Example, amount: float, chance: np.random.Generator) -> 
 
 
 def fewer_rows(case: Example, amount: float, _: np.random.Generator) -> Program:
-    """Every n-th row alone, at a rate as much lower, so that the way between them is so many tolerances off the path."""
+    """Every n-th row alone, at a lower rate, so that the way between them is so many tolerances off the path."""
     process = case.program.process
     limit = (process.tolerance + process.chord_tolerance) * amount
     for step in range(2, len(case.tool) // 8):
@@ -155,15 +154,14 @@ def off_sheet_of_robot(case: Example, amount: float, chance: np.random.Generator
     return Mutant(case.program, robot=replace(case.robot, workspace=workspace))
 
 
-def _moved(case: Example, rows: IntArray, way: Array, middle: int, amount: float) -> Program:
-    """The rows moved along ``way``, so far that the one in the middle is ``amount`` tolerances from its path."""
-    start, here = case.tool[rows], rows[[middle]]
-    limit = case.program.process.tolerance
+def _moved(case: Example, rows: IntArray, way: Array, amount: float) -> Program:
+    """The rows moved along ``way``, so far that the furthest of them is ``amount`` tolerances from its path."""
+    start, limit = case.tool[rows], case.program.process.tolerance
 
     def distance(size: float) -> float:
-        return float(case.off_path(here, (start + size * way)[[middle]])[0]) / limit
+        return float(case.off_path(rows, start + size * way).max()) / limit
 
-    return at_points(case.program, rows, start + aim(distance, amount, start=1e-6) * way)
+    return at_points(case.program, rows, start + aim(distance, amount, start=1e-8) * way)
 
 
 def _bump(case: Example, chance: np.random.Generator) -> tuple[IntArray, Array]:

@@ -127,6 +127,13 @@ def quite_another_robot(case: Example, amount: float, _: np.random.Generator) ->
     return Mutant(case.program, robot=replace(case.robot, tool=tool))
 
 
+def limits_raised(case: Example, amount: float, _: np.random.Generator) -> Mutant:
+    """A robot in the meta object that may accelerate more than the one there is, by this share."""
+    joints = case.robot.joints
+    raised = replace(joints, max_acceleration=tuple((1.0 + amount) * limit for limit in joints.max_acceleration))
+    return Mutant(replace(case.program, robot=replace(case.robot, joints=raised)), robot=case.robot)
+
+
 def joint_stop(case: Example, amount: float, chance: np.random.Generator) -> Mutant:
     """Checked against a robot that has a stop so many microdegrees inside the motion."""
     joint, upper = int(chance.integers(3)), bool(chance.integers(2))

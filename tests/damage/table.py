@@ -91,6 +91,9 @@ OF_LASER: dict[str, Kind] = {
     "a frame with the laser on": Kind(in_laser.other_mode(Mode.FRAME), ("laser off outside cuts",), "no tick", 1, 1000),
     "a dry run said to cut": Kind(in_laser.dry_run_said_to_cut, ("laser on in all cuts",), "no tick", 0.0, 1.0),
     "pierced too short": Kind(in_laser.pierce_shortened, ("pierce before every cut",), "half a tick", 1.01, 10.0),
+    "pierced for too long": Kind(
+        in_laser.pierced_too_long, ("laser on at rest",), "the pierce time and 20 ms", 1.1, 10.0
+    ),
     "not pierced": Kind(in_laser.not_pierced, ("pierce before every cut",), "half a tick", 1, 100),
     "a longer pierce in the meta": Kind(
         in_laser.longer_pierce_in_meta, ("pierce before every cut",), "half a tick", 0.51, 100.0, 0.49
@@ -141,6 +144,7 @@ OF_ROBOTS: dict[str, Kind] = {
     "another sheet of the robot": Kind(in_robot.other_sheet, ("sheet plane",), MICROMETRE, 1.05, 1000.0, 0.9),
     "slightly another robot": Kind(in_robot.slightly_other_robot, ("robot",), "nothing", 1e-3, 1000.0),
     "quite another robot": Kind(in_robot.quite_another_robot, ("robot",), "nothing", 1, 2),
+    "limits raised in the meta": Kind(in_robot.limits_raised, ("robot",), "nothing", 1e-9, 1.0),
     "a joint beyond its stop": Kind(
         in_robot.joint_stop, ("joint range (at least)",), "a millionth of a degree", 1.05, 1e6, 0.9
     ),
