@@ -32,21 +32,22 @@ def show(outcomes: list[Outcome], seconds: float) -> bool:
     harmless = [trial for trial in trials if not trial.size]
     _show_kinds(trials)
     print()
-    print(f"valid programs that pass     {_share(not one.failed for one in planned)}")
+    print(f"valid programs that pass     {_share(not one.said.failed for one in planned)}")
     print(f"harmless changes that pass   {_share(trial.right for trial in harmless)}")
     for change in HARMLESS:
         print(f"  {change:27}{_share(trial.right for trial in harmless if trial.kind == change)}")
     print(f"mutants found by their check {_share(trial.right for trial in mutants)}")
-    print(f"  by any check               {_share(bool(trial.found) for trial in mutants)}")
+    print(f"  by any check               {_share(bool(trial.said.failed) for trial in mutants)}")
     print(f"just below, let pass by it   {_share(trial.right for trial in below)}")
     print(f"{seconds:.0f} s")
     for one in outcomes:
-        if one.refused or one.failed:
-            print(f"SEED {one.seed}: {one.refused or ', '.join(one.failed)}")
+        if one.refused or one.said.failed:
+            print(f"SEED {one.seed}: {one.refused or ', '.join(sorted(one.said.failed))}")
     wrong = [trial for trial in trials if not trial.right]
     for trial in wrong:
-        print(f"WRONG seed {trial.seed}, {trial.kind} {trial.size}: {', '.join(sorted(trial.found)) or 'not found'}")
-    return not wrong and not any(one.failed for one in outcomes)
+        said = ", ".join(sorted(trial.said.failed)) or "passed"
+        print(f"WRONG seed {trial.seed}, {trial.kind} {trial.size}: {said}")
+    return not wrong and not any(one.said.failed for one in outcomes)
 
 
 def _show_kinds(trials: list[Trial]) -> None:
@@ -59,7 +60,7 @@ def _show_kinds(trials: list[Trial]) -> None:
     )
     for name, kind in KINDS.items():
         near, far, below = (of_kind[name, size] for size in ("near", "far", "below"))
-        fates = Counter("otherwise" if trial.found else "missed" for trial in near + far if not trial.right)
+        fates = Counter("otherwise" if trial.said.failed else "missed" for trial in near + far if not trial.right)
         found = [_share(trial.right for trial in some) for some in (near, far, below)]
         print(ROW.format(name, " or ".join(kind.checks), *found[:2], fates["otherwise"], fates["missed"], found[2]))
 

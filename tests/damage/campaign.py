@@ -10,7 +10,7 @@ from deltacam.errors import DeltacamError
 from tests.damage.aim import NoPlaceError
 from tests.damage.example import Example, example
 from tests.damage.harmless import HARMLESS
-from tests.damage.kind import READING, failed
+from tests.damage.kind import Verdict, verdict
 from tests.damage.table import KINDS
 
 SIZES = ("near", "far", "below")
@@ -25,15 +25,15 @@ class Trial:
         seed: of the program.
         kind: of damage, or what harmless change was made.
         size: one of `SIZES`, or empty for a harmless change.
-        found: the names of the checks that it failed.
-        right: whether that was as it should be: the check of the kind found it, or let it pass below its tolerance; no
-            check at all found a harmless change.
+        said: what was said.
+        right: whether that was as it should be: the check of the kind found it, or let it pass below its tolerance; a
+            harmless change passes.
     """
 
     seed: int
     kind: str
     size: str
-    found: frozenset[str]
+    said: Verdict
     right: bool
 
 
@@ -44,19 +44,14 @@ class Outcome:
     Attributes:
         seed: of the program.
         refused: why the pipeline planned nothing; empty where it did.
-        failed: the checks that the valid program fails.
+        said: what was said to the valid program.
         trials: of its mutants and its harmless changes.
     """
 
     seed: int
     refused: str
-    failed: tuple[str, ...]
+    said: Verdict
     trials: tuple[Trial, ...]
-
-
-def is_checked(case: Example, kind: str) -> bool:
-    """Whether one of the checks that a kind of damage is for is made at all."""
-    return any(name == READING or name in case.checks for name in KINDS[kind].checks)
 
 
 def attempt(case: Example, kind: str, size: str) -> Trial:
@@ -67,11 +62,12 @@ def attempt(case: Example, kind: str, size: str) -> Trial:
     """
     damage = KINDS[kind]
     amount = getattr(damage, size)
-    if amount is None or not is_checked(case, kind):
+    if amount is None:
         raise NoPlaceError
     chance = np.random.default_rng([case.seed, zlib.crc32(kind.encode()), SIZES.index(size)])
-    found = frozenset(failed(case, damage.make(case, amount, chance)))
-    return Trial(case.seed, kind, size, found, found.isdisjoint(damage.checks) == (size == "below"))
+    said = verdict(case, damage.make(case, amount, chance))
+    silent = (said.failed | said.warned).isdisjoint(damage.checks)
+    return Trial(case.seed, kind, size, said, silent == (size == "below"))
 
 
 def try_harmless(case: Example, change: str) -> Trial:
@@ -80,8 +76,8 @@ def try_harmless(case: Example, change: str) -> Trial:
     Raises:
         NoPlaceError: the program has no place for it.
     """
-    found = frozenset(failed(case, HARMLESS[change](case)))
-    return Trial(case.seed, change, "", found, not found)
+    said = verdict(case, HARMLESS[change](case))
+    return Trial(case.seed, change, "", said, not said.failed)
 
 
 def outcome(seed: int, mutants: int, kinds: Iterable[str] = tuple(KINDS)) -> Outcome:
@@ -92,8 +88,7 @@ def outcome(seed: int, mutants: int, kinds: Iterable[str] = tuple(KINDS)) -> Out
     try:
         case = example(seed)
     except DeltacamError as problem:
-        return Outcome(seed, str(problem), (), ())
-    wrong = tuple(name for name, check in case.checks.items() if not check.passed)
+        return Outcome(seed, str(problem), Verdict(frozenset()), ())
     turns = [(kind, size) for kind in kinds for size in ("near", "far")]
     start = seed * mutants % len(turns)
     trials: list[Trial] = []
@@ -104,7 +99,7 @@ def outcome(seed: int, mutants: int, kinds: Iterable[str] = tuple(KINDS)) -> Out
         both = list(_attempts(case, kind, size))
         made += bool(both)
         trials += both
-    return Outcome(seed, "", wrong, (*trials, *_harmless(case)))
+    return Outcome(seed, "", Verdict.of(case.report), (*trials, *_harmless(case)))
 
 
 def _attempts(case: Example, kind: str, size: str) -> Iterator[Trial]:

@@ -49,6 +49,17 @@ class Example:
         """Where the tool is at every tick, (N, 3) m in the base frame."""
         return self.program.robot.forward(self.program.q)
 
+    @cached_property
+    def middles(self) -> Array:
+        """Where the tool is half-way between the ticks, (N - 1, 3) m: cubic curves leave chords by their slopes."""
+        q = self.program.q
+        halves = 0.5 * (q[:-1] + q[1:])
+        if self.robot.controller.interpolation == "cubic":
+            slopes = 0.5 * np.diff(np.pad(q, ((1, 1), (0, 0)), mode="edge"), axis=0)
+            slopes = slopes[:-1] + slopes[1:]
+            halves += (slopes[:-1] - slopes[1:]) / 8.0
+        return self.robot.forward(halves)
+
     @property
     def robot(self) -> Robot:
         return self.program.robot

@@ -9,7 +9,7 @@ import shapely
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Block, BlockKind, Contour
 from deltacam.program.program import Program
-from tests.damage.aim import NoPlaceError
+from tests.damage.aim import NoPlaceError, aim
 from tests.damage.example import SAGITTA, Example, beam_path
 from tests.damage.stretches import Job, Stretch, along, jobs, together
 
@@ -96,24 +96,15 @@ def cut_said_to_be(kind: BlockKind) -> Make:
     return make
 
 
-def ended_early(name: str) -> Make:
-    """A cut around a contour ended before its start, by so many times what is tolerated."""
+def ended_early(case: Example, amount: float, chance: np.random.Generator) -> Program:
+    """A cut around a contour ended before its start, so that this many times what may be left of it is not cut."""
+    process = case.program.process
+    return _with_gap(case, amount * (2.0 * (process.tolerance + process.chord_tolerance) + 2.0 * SPACING), chance)
 
-    def make(case: Example, amount: float, chance: np.random.Generator) -> Program:
-        process = case.program.process
-        gap = amount * (2.0 * (process.tolerance + process.chord_tolerance) + 2.0 * SPACING)
-        if name in case.checks and (limit := case.checks[name].limit):
-            gap = amount * limit * 1e-6
-        todo, index, cut = _some_cut(case, chance)
-        points = case.robot.forward(cut.q)
-        left = np.linalg.norm(points - points[-1], axis=1) >= gap
-        last = int(np.flatnonzero(left)[-1]) if left.any() else 0
-        if last < len(points) // 2:
-            raise NoPlaceError
-        short = replace(cut, q=along(case.program, points[: last + 1], 0.5 * process.feed))
-        return _with_cut(case, todo, index, short)
 
-    return make
+def end_beside_start(case: Example, amount: float, chance: np.random.Generator) -> Program:
+    """The same, so many tolerances before its start."""
+    return _with_gap(case, amount * case.program.process.tolerance, chance)
 
 
 def there_and_back(case: Example, amount: float, chance: np.random.Generator) -> Program:
@@ -141,27 +132,23 @@ def cut_again(case: Example, amount: float, chance: np.random.Generator) -> Prog
 
 
 def pierced_in_part(case: Example, amount: float, chance: np.random.Generator) -> Program:
-    """A pierce so many tolerances nearer to the part than the beam may come, and a lead-in from there."""
+    """A pierce so many tolerances nearer to the part than the beam belongs, and a lead-in from there."""
     todo, index, cut = _some_cut(case, chance)
     if case.program.process.pierce_time == 0.0:
         raise NoPlaceError
-    here = np.array([cut.block.first])
-    distance = amount * case.program.process.tolerance + float(case.off_path(here, case.tool[here])[0])
-    points = _into_part(case, cut, distance)
-    lead = Stretch(replace(cut.block, kind=BlockKind.LEAD_IN), along(case.program, points[::-1]), cut.power)
+    lead = replace(cut, block=replace(cut.block, kind=BlockKind.LEAD_IN), q=_into_part(case, cut, amount)[::-1])
     pierce = todo[index][0]
     todo[index] = (replace(pierce, q=np.repeat(lead.q[:1], len(pierce.q), axis=0)), lead, cut)
     return together(case.program, todo)
 
 
 def lead_through_part(kind: BlockKind) -> Make:
-    """A lead into the part and back, of so many millimetres, before or after a cut."""
+    """A lead before or after a cut that comes so many tolerances nearer to the part than the beam belongs, and back."""
 
     def make(case: Example, amount: float, chance: np.random.Generator) -> Program:
         todo, index, cut = _some_cut(case, chance)
-        points = _into_part(case, cut, amount * 1e-3)
-        way = along(case.program, np.concatenate([points, points[:1]]))
-        lead = Stretch(replace(cut.block, kind=kind), way, cut.power)
+        way = _into_part(case, cut, amount)
+        lead = replace(cut, block=replace(cut.block, kind=kind), q=np.concatenate([way, way[-2::-1]]))
         job = todo[index]
         todo[index] = (*job, lead) if kind is BlockKind.LEAD_OUT else (*job[:-1], lead, cut)
         return together(case.program, todo)
@@ -184,6 +171,17 @@ def _with_cut(case: Example, todo: list[Job], index: int, cut: Stretch) -> Progr
     return together(case.program, [*todo[:index], (*todo[index][:-1], cut), *todo[index + 1 :]])
 
 
+def _with_gap(case: Example, gap: float, chance: np.random.Generator) -> Program:
+    """The last tick of a cut around a contour that is at least so far from its start is where it ends."""
+    todo, index, cut = _some_cut(case, chance)
+    points = case.robot.forward(cut.q)
+    away = np.flatnonzero(np.linalg.norm(points - points[-1], axis=1) >= gap)
+    if not len(away) or away[-1] < len(points) // 2:
+        raise NoPlaceError
+    way = along(case.program, points[: int(away[-1]) + 1], 0.5 * case.program.process.feed)
+    return _with_cut(case, todo, index, replace(cut, q=way))
+
+
 def _gone_on(case: Example, cut: Stretch, distance: float) -> Stretch:
     """The cut with a way along its beginning and back after its end."""
     points = case.robot.forward(cut.q)
@@ -196,22 +194,23 @@ def _gone_on(case: Example, cut: Stretch, distance: float) -> Stretch:
     return replace(cut, q=np.concatenate([cut.q, extra[1:]]))
 
 
-def _into_part(case: Example, cut: Stretch, distance: float) -> Array:
-    """The straight way from the start of a cut into the finished part, (2, 3) m in the base frame."""
-    contour = _contour(case, cut.block)
-    start = case.robot.forward(cut.q[:1])
+def _into_part(case: Example, cut: Stretch, amount: float) -> Array:
+    """Joint angles on a straight way from the start of a cut so many tolerances into the finished part, (n, 3) rad."""
+    contour, process = _contour(case, cut.block), case.program.process
+    start = case.tool[[cut.block.first]]
     outline = shapely.Polygon(curves.flatten(contour.curve, SAGITTA)[0])
     angles = np.linspace(0.0, 2.0 * np.pi, 73)[:-1]
     ways = np.stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))], axis=1)
-    # The way on which the beam's centre gets furthest into the material that stays.
-    reach = case.program.process.kerf / 2.0 + 0.2e-3
-    ends = shapely.points(case.sheet(start + reach * ways))
-    inside = shapely.contains(outline, ends) != contour.is_hole
-    depth = np.where(inside, shapely.distance(ends, outline.boundary), -1.0)
-    best = int(np.argmax(depth))
-    if depth[best] <= 0.0:
-        raise NoPlaceError
-    return np.concatenate([start, start + distance * ways[[best]]])
+
+    def depth(points: Array) -> Array:
+        """How much nearer than half a kerf the tool is to the material inside an outline, or outside a hole, m."""
+        places = shapely.points(case.sheet(points))
+        sign = np.where(shapely.contains(outline, places) != contour.is_hole, 1.0, -1.0)
+        return np.asarray(process.kerf / 2.0 + sign * shapely.distance(places, outline.boundary))
+
+    way = ways[[int(np.argmax(depth(start + (process.kerf / 2.0 + 0.2e-3) * ways)))]]
+    distance = aim(lambda size: float(depth(start + size * way)[0]), amount * process.tolerance, start=1e-6)
+    return along(case.program, np.concatenate([start, start + distance * way]), 0.5 * process.feed)
 
 
 def _contour(case: Example, block: Block) -> Contour:

@@ -123,6 +123,13 @@ def finer_tolerance(case: Example, amount: float, _: np.random.Generator) -> Pro
     return replace(case.program, process=replace(case.program.process, tolerance=worst / amount))
 
 
+def wider_tolerance(case: Example, amount: float, _: np.random.Generator) -> Mutant:
+    """A tolerance in the meta object that is larger than that of the process at hand, by this share."""
+    process = case.program.process
+    wider = replace(process, tolerance=process.tolerance * (1.0 + amount))
+    return Mutant(replace(case.program, process=wider), process=process)
+
+
 def placement_shifted(case: Example, amount: float, chance: np.random.Generator) -> Program:
     """Another place of the drawing in the meta object, so that a tick is so many tolerances from its path."""
     angle = chance.uniform(0.0, 2.0 * np.pi)

@@ -9,6 +9,7 @@ from deltacam.model import Block, BlockKind, IntArray, Mode
 from deltacam.program.program import Program
 from tests.damage.aim import NoPlaceError
 from tests.damage.example import WORKING, Example
+from tests.damage.in_motion import longest_rest
 from tests.damage.rows import gathered, with_power
 from tests.damage.stretches import Stretch, jobs, together
 
@@ -78,9 +79,9 @@ def pierce_shortened(case: Example, amount: float, chance: np.random.Generator) 
 
 
 def pierced_too_long(case: Example, amount: float, chance: np.random.Generator) -> Program:
-    """A pierce that takes longer than the process says and 20 ms, by this factor."""
+    """A pierce that takes longer than the process says, by so many times what a corner may take."""
     block = _block(case, (BlockKind.PIERCE,), chance)
-    needed = int(np.ceil(amount * (case.program.process.pierce_time + 0.02) * case.rate)) + 1
+    needed = int((case.program.process.pierce_time + amount * longest_rest(case)) * case.rate) + 1
     more = needed - (block.last - block.first + 1)
     return gathered(case.program, np.insert(np.arange(len(case.program.q)), block.first, [block.first] * more))
 

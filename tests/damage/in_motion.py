@@ -46,6 +46,25 @@ def of_tool(order: int) -> Share:
     return share
 
 
+def of_curve(order: int) -> Share:
+    """The share of the joints' limit of speed (1) or acceleration (2) that Hermite curves between the rows have."""
+
+    def share(case: Example, q: Array, _: Array) -> float:
+        if case.robot.controller.interpolation != "cubic":
+            raise NoPlaceError
+        slopes, steps = (q[2:] - q[:-2]) / 2.0, np.diff(q[1:-1], axis=0)
+        start, end, u = slopes[:-1], slopes[1:], np.linspace(0.0, 1.0, 41)[:, np.newaxis, np.newaxis]
+        if order == 1:
+            limit = case.robot.joints.max_speed
+            found = 6.0 * u * (1.0 - u) * steps + (1.0 - 4.0 * u + 3.0 * u**2) * start + (3.0 * u**2 - 2.0 * u) * end
+        else:
+            limit = case.robot.joints.max_acceleration
+            found = 6.0 * (1.0 - 2.0 * u) * steps + (6.0 * u - 4.0) * start + (6.0 * u - 2.0) * end
+        return float((np.abs(found) * case.rate**order / limit).max()) / ALLOWED
+
+    return share
+
+
 def faster_controller(share: Share, order: int) -> Make:
     """A rate of setpoints at which the same rows have just this share of a limit."""
 
@@ -87,9 +106,8 @@ def faster_cut(case: Example, amount: float, chance: np.random.Generator) -> Pro
     return with_q(gathered(case.program, index), block.first + np.arange(len(found)), found)
 
 
-def jolt(order: int) -> Make:
+def jolt(share: Share) -> Make:
     """One joint of one setpoint moved, to this share of a limit of the joints."""
-    share = of_joints(order)
 
     def make(case: Example, amount: float, chance: np.random.Generator) -> Program:
         rows, here = _window(case, chance)
@@ -161,38 +179,34 @@ def end_at_speed(case: Example, amount: float, chance: np.random.Generator) -> P
 
 
 def standing_in_a_cut(case: Example, amount: float, chance: np.random.Generator) -> Program:
-    """The tool stays where it is slowest inside a cut, for longer than to pierce and 20 ms, by this share."""
+    """The tool stays where it is slowest inside a cut, for so many times what a corner may take."""
     cuts = [block for block in case.program.blocks if block.kind is BlockKind.CUT]
     block = cuts[int(chance.integers(len(cuts)))]
     margin = (block.last - block.first) // 4
     rows = np.arange(block.first + margin, block.last - margin)
     steps = np.linalg.norm(case.tool[rows + 1] - case.tool[rows], axis=1)
     row = int(rows[np.argmin(steps)])
-    ticks = int(np.ceil(amount * (case.program.process.pierce_time + 0.02) * case.rate)) + 1
+    ticks = int(amount * longest_rest(case) * case.rate) + 1
     return gathered(case.program, np.r_[:row, np.repeat(row, ticks), row : len(case.tool)])
 
 
+def longest_rest(case: Example) -> float:
+    """How long the laser may be on at rest, the pierce not counted, s."""
+    return max(0.02, 3.0 / case.rate)
+
+
 def swinging(case: Example, amount: float, chance: np.random.Generator) -> Program:
-    """A joint to and fro at every tick, which cubic interpolation makes worse between the ticks than at them.
+    """A joint to and fro at every tick, so that it has this share of its acceleration between the ticks.
 
-    The acceleration at the ends of an interval is 2 a - b, of the second differences a and b at its own end and at the
-    other one.
+    At the ticks it has less: where second differences a and b follow each other, a Hermite curve has 2 a - b.
     """
-    if case.robot.controller.interpolation != "cubic":
-        raise NoPlaceError
-    first = int(chance.integers(2, len(case.tool) - 12))
-    rows, joint = np.arange(first - 2, first + 10), int(chance.integers(3))
-    swing = np.zeros(len(rows))
-    swing[2:-2] = (-1.0) ** np.arange(len(rows) - 4)
-
-    def measure(size: float) -> float:
-        second = np.diff(case.program.q[rows, joint] + size * swing, n=2) * case.rate**2
-        ends = np.stack([2.0 * second[:-1] - second[1:], 2.0 * second[1:] - second[:-1]])
-        return float(np.abs(ends).max()) / case.robot.joints.max_acceleration[joint]
-
-    q = case.program.q[rows].copy()
-    q[:, joint] += aim(measure, amount, start=1e-9) * swing
-    return with_q(case.program, rows, q)
+    rows, _ = _window(case, chance)
+    joint = np.eye(3)[int(chance.integers(3))]
+    swing = np.zeros((len(rows), 3))
+    swing[3:-3] = np.outer((-1.0) ** np.arange(len(rows) - 6), joint)
+    share, q = of_curve(2), case.program.q[rows]
+    size = aim(lambda size: share(case, q + size * swing, q), amount, start=1e-9)
+    return with_q(case.program, rows, q + size * swing)
 
 
 def _held(values: Array) -> Array:

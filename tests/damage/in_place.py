@@ -28,26 +28,27 @@ def beside_path(case: Example, amount: float, chance: np.random.Generator) -> Pr
     return _moved(case, np.array([row]), way, amount)
 
 
+def hidden_by_tolerance(case: Example, amount: float, chance: np.random.Generator) -> Mutant:
+    """The same where the tolerance in the meta object is a thousand times as large, checked against the real one."""
+    moved, process = beside_path(case, amount, chance), case.program.process
+    return Mutant(replace(moved, process=replace(process, tolerance=1e3 * process.tolerance)), process=process)
+
+
 def bulge(case: Example, amount: float, chance: np.random.Generator) -> Program:
     """Twenty setpoints moved smoothly to one side, to so many tolerances from the path."""
     rows, way = _bump(case, chance)
     return _moved(case, rows, way, amount)
 
 
-def into_the_part(name: str) -> Make:
-    """The same towards the finished part, to so many times what the check of a name allows."""
-
-    def make(case: Example, amount: float, chance: np.random.Generator) -> Program:
-        rows, way = _bump(case, chance)
-        check = case.checks[name]
-        if check.limit is None or not case.contour(int(rows[0])).has_kerf:
-            raise NoPlaceError
-        here = rows[[BUMP // 2]]
-        sign = np.sign(float(np.dot(_to_line(case, here)[0], way[BUMP // 2]))) or 1.0
-        size = amount * check.limit * MICROMETRE + float(case.off_path(here, case.tool[here])[0])
-        return at_points(case.program, rows, case.tool[rows] + size * sign * way)
-
-    return make
+def into_the_part(case: Example, amount: float, chance: np.random.Generator) -> Program:
+    """The same towards the finished part, to so many times what the edge of a part may be off."""
+    rows, way = _bump(case, chance)
+    if not case.contour(int(rows[0])).has_kerf:
+        raise NoPlaceError
+    here = rows[[BUMP // 2]]
+    sign = np.sign(float(np.dot(_to_line(case, here)[0], way[BUMP // 2]))) or 1.0
+    size = amount * _edge_limit(case) + float(case.off_path(here, case.tool[here])[0])
+    return at_points(case.program, rows, case.tool[rows] + size * sign * way)
 
 
 def too_near_to_line(case: Example, amount: float, chance: np.random.Generator) -> Program:
@@ -70,19 +71,15 @@ def kerf_side(case: Example, amount: float, _: np.random.Generator) -> Program:
     return at_points(case.program, rows, case.tool[rows] + amount * _to_line(case, rows))
 
 
-def size_off(name: str) -> Make:
-    """All cuts moved towards the drawn line by so many times what the check of a name allows."""
-
-    def make(case: Example, amount: float, _: np.random.Generator) -> Program:
-        rows, check = _beside_line(case), case.checks[name]
-        if check.limit is None:
-            raise NoPlaceError
-        step = _to_line(case, rows)
-        distance = (amount * check.limit + abs(check.worst or 0.0)) * MICROMETRE
-        step *= distance / np.linalg.norm(step, axis=1, keepdims=True)
-        return at_points(case.program, rows, case.tool[rows] + step)
-
-    return make
+def parts_too_small(case: Example, amount: float, _: np.random.Generator) -> Program:
+    """All cuts moved towards the drawn line by so many times what the edge of a part may be off."""
+    rows = _beside_line(case)
+    step = _to_line(case, rows)
+    # Rounded corners may have shifted the mean of the edge the other way, by no more than the tolerance.
+    distance = amount * _edge_limit(case) + case.program.process.tolerance
+    return at_points(
+        case.program, rows, case.tool[rows] + distance * step / np.linalg.norm(step, axis=1, keepdims=True)
+    )
 
 
 def above_sheet(case: Example, amount: float, chance: np.random.Generator) -> Program:
@@ -127,31 +124,57 @@ def off_the_sheet(case: Example, amount: float, chance: np.random.Generator) -> 
     return at_points(moved, rows, case.tool[rows] + shift)
 
 
-def fewer_rows(case: Example, amount: float, _: np.random.Generator) -> Program:
-    """Every n-th row alone, at a lower rate, so that the way between them is so many tolerances off the path."""
-    process = case.program.process
-    limit = (process.tolerance + process.chord_tolerance) * amount
-    for step in range(2, len(case.tool) // 8):
-        index = np.arange(0, len(case.tool), step)
-        start, end = index[:-1], index[1:]
-        working = np.isin(case.kind[start].astype(str), WORKING)
-        inside = np.flatnonzero(working & (case.program.block[start] == case.program.block[end]))
-        middles = case.robot.forward(0.5 * (case.program.q[start[inside]] + case.program.q[end[inside]]))
-        far = case.off_path(start[inside], middles)
-        if far.max(initial=0.0) > limit:
-            controller = replace(case.robot.controller, rate_hz=case.rate / step, interpolation="linear")
-            return replace(gathered(case.program, index), robot=replace(case.robot, controller=controller))
-    raise NoPlaceError
+def fewer_rows(above_sheet: bool) -> Make:
+    """Every n-th row alone, at a lower rate, so that the way between them is so many times off what it may be.
+
+    That is the path, for the sum of both tolerances, or the plane of the sheet, for the tolerance of the chords.
+    """
+
+    def make(case: Example, amount: float, _: np.random.Generator) -> Program:
+        limit = amount * (_edge_limit(case) - (case.program.process.tolerance if above_sheet else 0.0))
+        for step in range(2, len(case.tool) // 8):
+            index = np.arange(0, len(case.tool), step)
+            if _off_between(case, index, above_sheet) > limit:
+                controller = replace(case.robot.controller, rate_hz=case.rate / step, interpolation="linear")
+                return replace(gathered(case.program, index), robot=replace(case.robot, controller=controller))
+        raise NoPlaceError
+
+    return make
 
 
 def off_sheet_of_robot(case: Example, amount: float, chance: np.random.Generator) -> Mutant:
     """Checked against a robot whose sheet ends so many micrometres before the program does."""
-    reach = np.abs(case.tool[:, :2]).max(axis=0) - amount * MICROMETRE
+    return _on_smaller_sheet(case, case.tool, amount * MICROMETRE, chance)
+
+
+def off_sheet_between(case: Example, amount: float, chance: np.random.Generator) -> Mutant:
+    """The same between two ticks, by so many tolerances of the chords."""
+    return _on_smaller_sheet(case, case.middles, amount * (case.program.process.chord_tolerance + MICROMETRE), chance)
+
+
+def _on_smaller_sheet(case: Example, tool: Array, distance: float, chance: np.random.Generator) -> Mutant:
+    """Checked against a robot whose sheet ends so far before the furthest of some points."""
     axis = int(chance.integers(2))
     size = [10.0, 10.0]
-    size[axis] = 2.0 * float(reach[axis])
+    size[axis] = 2.0 * (float(np.abs(tool[:, axis]).max()) - distance)
     workspace = replace(case.robot.workspace, width=size[0], depth=size[1], radius=None)
     return Mutant(case.program, robot=replace(case.robot, workspace=workspace))
+
+
+def _edge_limit(case: Example) -> float:
+    """How far the way of the beam may be off between the ticks, m."""
+    return case.program.process.tolerance + case.program.process.chord_tolerance + MICROMETRE
+
+
+def _off_between(case: Example, index: IntArray, above_sheet: bool) -> float:
+    """How far the way straight from row to row, of those in ``index``, is off the sheet's plane or off its path, m."""
+    start, end, block = index[:-1], index[1:], case.program.block
+    if not above_sheet:
+        working = np.isin(case.kind[start].astype(str), WORKING) & (block[start] == block[end])
+        start, end = start[working], end[working]
+    middles = case.robot.forward(0.5 * (case.program.q[start] + case.program.q[end]))
+    off = np.abs(middles[:, 2] - case.program.placement.z) if above_sheet else case.off_path(start, middles)
+    return float(off.max(initial=0.0))
 
 
 def _moved(case: Example, rows: IntArray, way: Array, amount: float) -> Program:

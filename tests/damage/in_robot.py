@@ -147,13 +147,13 @@ def joint_stop(case: Example, amount: float, chance: np.random.Generator) -> Mut
 
 def pressure(case: Example, amount: float, _: np.random.Generator) -> Mutant:
     """Checked against a robot whose largest pressure angle is so many microdegrees less than in the motion."""
-    used = max(float(angles.max()) for angles in case.robot.pressure_angles(case.tool))
+    used = max(float(mu.max()) for tool in (case.tool, case.middles) for mu in case.robot.pressure_angles(tool))
     return _with_workspace(case, max_pressure_angle=used - np.radians(amount * 1e-6))
 
 
 def swing(case: Example, amount: float, _: np.random.Generator) -> Mutant:
     """The same for the swing of the forearms."""
-    used = float(case.robot.forearm_swing(case.tool).max())
+    used = max(float(case.robot.forearm_swing(tool).max()) for tool in (case.tool, case.middles))
     limit = used - np.radians(amount * 1e-6)
     if limit < np.radians(1.0):  # a robot with less cannot be
         raise NoPlaceError

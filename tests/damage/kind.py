@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from deltacam.errors import ProgramError
-from deltacam.model import Drawing
+from deltacam.model import Drawing, Process, Report
 from deltacam.program import csv
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
@@ -26,11 +26,13 @@ class Mutant:
         program: the bytes of a file, or a program that is written as deltacam writes it.
         drawing: that it is checked against; None takes that of the example.
         robot: that it is checked against; None takes the one in the program.
+        process: likewise.
     """
 
     program: Program | bytes
     drawing: Drawing | None = None
     robot: Robot | None = None
+    process: Process | None = None
 
 
 Make = Callable[[Example, float, np.random.Generator], Program | bytes | Mutant]
@@ -58,15 +60,36 @@ class Kind:
     below: float | None = None
 
 
-def failed(example: Example, made: Program | bytes | Mutant) -> set[str]:
-    """The names of the checks that a mutant fails, by way of the bytes of a file; none where it passes."""
+@dataclass(frozen=True)
+class Verdict:
+    """What the verifier says to a mutant.
+
+    Attributes:
+        failed: the names of the checks that it fails, or `READING`; none where it may be used.
+        warned: the names of those that do not make it fail.
+    """
+
+    failed: frozenset[str]
+    warned: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(cls, report: Report) -> "Verdict":
+        """What a report comes to."""
+        wrong = [check for check in report.checks if not check.passed]
+        warned = frozenset(check.name for check in wrong if check.warns)
+        return cls(frozenset(check.name for check in wrong) - warned, warned)
+
+
+def verdict(example: Example, made: Program | bytes | Mutant) -> Verdict:
+    """What the verifier says to a mutant, by way of the bytes of a file."""
     mutant = made if isinstance(made, Mutant) else Mutant(made)
     try:
         program = csv.read(io.BytesIO(_content(mutant.program)), name="mutant.program.csv")
     except ProgramError:
-        return {READING}
-    report = verify(program, drawing=mutant.drawing or example.drawing, robot=mutant.robot)
-    return {check.name for check in report.checks if not check.passed}
+        return Verdict(frozenset({READING}))
+    drawing = mutant.drawing or example.drawing
+    report = verify(program, drawing=drawing, robot=mutant.robot, process=mutant.process)
+    return Verdict.of(report)
 
 
 def _content(program: Program | bytes) -> bytes:

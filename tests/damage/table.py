@@ -1,17 +1,19 @@
 """The table of kinds of damage: which check must find each, what is tolerated, and how large the mutants are.
 
-A new check needs a line here. The checks of a line may be ones that are not made yet: it is passed over until then.
+A new check needs a line here.
 """
 
 from deltacam.model import BlockKind, Mode
 from tests.damage import in_contours, in_drawing, in_file, in_laser, in_motion, in_place, in_robot
-from tests.damage.in_motion import DOUBLED, LOST, SWAPPED, of_joints, of_tool
+from tests.damage.in_motion import DOUBLED, LOST, SWAPPED, of_curve, of_joints, of_tool
 from tests.damage.kind import READING, Kind
 
 FILE = ("file integrity", READING)
 LIMIT = "the limit and 0.1 %"
 PATH = "the tolerance"
+EDGE = "the sum of both tolerances"
 MICROMETRE = "1 um"
+REST = "20 ms or 3 ticks"
 
 OF_FILES: dict[str, Kind] = {
     "end cut off": Kind(in_file.end_cut_off, FILE, "no byte", 1, 10_000),
@@ -54,9 +56,9 @@ OF_MOTION: dict[str, Kind] = {
     "played faster: feed": Kind(in_motion.faster_feed, ("feed while cutting",), LIMIT, 1.01, 3.0, 0.99),
     "a slower feed in the meta": Kind(in_motion.slower_feed_in_meta, ("feed while cutting",), LIMIT, 1.01, 3.0, 0.99),
     "a cut resampled faster": Kind(in_motion.faster_cut, ("feed while cutting",), LIMIT, 1.01, 3.0),
-    "a jolt: joint speed": Kind(in_motion.jolt(1), ("joint speed",), LIMIT, 1.01, 10.0, 0.99),
-    "a jolt: joint acceleration": Kind(in_motion.jolt(2), ("joint acceleration",), LIMIT, 1.01, 10.0, 0.99),
-    "a jolt: joint jerk": Kind(in_motion.jolt(3), ("joint jerk",), LIMIT, 1.01, 10.0, 0.99),
+    "a jolt: joint speed": Kind(in_motion.jolt(of_joints(1)), ("joint speed",), LIMIT, 1.01, 10.0, 0.99),
+    "a jolt: joint acceleration": Kind(in_motion.jolt(of_joints(2)), ("joint acceleration",), LIMIT, 1.01, 10.0, 0.99),
+    "a jolt: joint jerk": Kind(in_motion.jolt(of_joints(3)), ("joint jerk",), LIMIT, 1.01, 10.0, 0.99),
     "a jolt: tool speed": Kind(in_motion.tool_jolt(1), ("tool speed",), LIMIT, 1.01, 10.0, 0.99),
     "a jolt: tool acceleration": Kind(in_motion.tool_jolt(2), ("tool acceleration",), LIMIT, 1.01, 10.0, 0.99),
     "all angles trembling": Kind(in_motion.trembling, ("joint acceleration",), LIMIT, 1.01, 10.0, 0.99),
@@ -66,12 +68,11 @@ OF_MOTION: dict[str, Kind] = {
     "an end at speed": Kind(
         in_motion.end_at_speed, ("rest at both ends",), "a dt^2 / 2 at the tool's full acceleration", 1.01, 3.0
     ),
-    "standing still in a cut": Kind(
-        in_motion.standing_in_a_cut, ("laser on at rest",), "the pierce time and 20 ms", 1.1, 10.0
+    "standing still in a cut": Kind(in_motion.standing_in_a_cut, ("laser on at rest",), REST, 1.05, 10.0),
+    "a jolt: joint speed between ticks": Kind(
+        in_motion.jolt(of_curve(1)), ("joint speed between ticks",), LIMIT, 1.01, 10.0, 0.99
     ),
-    "swinging between ticks": Kind(
-        in_motion.swinging, ("joint acceleration between ticks",), "the limit of the joints", 1.1, 2.5
-    ),
+    "swinging between ticks": Kind(in_motion.swinging, ("joint acceleration between ticks",), LIMIT, 1.01, 2.5),
 }
 """Motion that the machine cannot follow, or that burns."""
 
@@ -91,9 +92,7 @@ OF_LASER: dict[str, Kind] = {
     "a frame with the laser on": Kind(in_laser.other_mode(Mode.FRAME), ("laser off outside cuts",), "no tick", 1, 1000),
     "a dry run said to cut": Kind(in_laser.dry_run_said_to_cut, ("laser on in all cuts",), "no tick", 0.0, 1.0),
     "pierced too short": Kind(in_laser.pierce_shortened, ("pierce before every cut",), "half a tick", 1.01, 10.0),
-    "pierced for too long": Kind(
-        in_laser.pierced_too_long, ("laser on at rest",), "the pierce time and 20 ms", 1.1, 10.0
-    ),
+    "pierced for too long": Kind(in_laser.pierced_too_long, ("laser on at rest",), REST, 1.05, 10.0),
     "not pierced": Kind(in_laser.not_pierced, ("pierce before every cut",), "half a tick", 1, 100),
     "a longer pierce in the meta": Kind(
         in_laser.longer_pierce_in_meta, ("pierce before every cut",), "half a tick", 0.51, 100.0, 0.49
@@ -106,13 +105,14 @@ OF_LASER: dict[str, Kind] = {
 
 OF_PLACES: dict[str, Kind] = {
     "a setpoint beside its path": Kind(in_place.beside_path, ("deviation at ticks",), PATH, 1.1, 30.0, 0.9),
-    "a cut with a bulge": Kind(in_place.bulge, ("deviation at ticks",), PATH, 1.1, 30.0, 0.9),
-    "a bulge into the part": Kind(
-        in_place.into_the_part("part edge"), ("part edge",), "the limit of the check", 1.2, 10.0
+    "a setpoint hidden by a wide tolerance": Kind(
+        in_place.hidden_by_tolerance, ("deviation at ticks",), PATH, 1.1, 30.0, 0.9
     ),
+    "a cut with a bulge": Kind(in_place.bulge, ("deviation at ticks",), PATH, 1.1, 30.0, 0.9),
+    "a bulge into the part": Kind(in_place.into_the_part, ("part edge",), EDGE, 1.1, 10.0),
     "cuts too near to their lines": Kind(in_place.too_near_to_line, ("deviation at ticks",), PATH, 1.1, 3.0),
     "the kerf on the wrong side": Kind(in_place.kerf_side, ("deviation at ticks",), "the tolerance", 1.0, 2.0),
-    "all parts too small": Kind(in_place.size_off("part size"), ("part size",), "the limit of the check", 1.2, 5.0),
+    "all parts too small": Kind(in_place.parts_too_small, ("part size",), EDGE, 1.1, 5.0),
     "a setpoint above the sheet": Kind(in_place.above_sheet, ("sheet plane",), MICROMETRE, 1.05, 1000.0, 0.9),
     "an end beside the park position": Kind(in_place.beside_park, ("park position",), MICROMETRE, 1.05, 1000.0, 0.9),
     "moved in a pierce": Kind(in_place.moved_in_pierce(False), ("rest while piercing",), MICROMETRE, 1.05, 100.0, 0.9),
@@ -121,8 +121,12 @@ OF_PLACES: dict[str, Kind] = {
     ),
     "off the sheet": Kind(in_place.off_the_sheet, ("sheet area",), MICROMETRE, 1.05, 5000.0, 0.9),
     "a smaller sheet": Kind(in_place.off_sheet_of_robot, ("sheet area",), MICROMETRE, 1.05, 5000.0, 0.9),
-    "rows left out, the rate lowered": Kind(
-        in_place.fewer_rows, ("deviation between ticks",), "the sum of both tolerances", 1.1, 10.0
+    "a smaller sheet, between ticks": Kind(
+        in_place.off_sheet_between, ("sheet area between ticks",), "the tolerance of chords", 1.1, 100.0, 0.9
+    ),
+    "fewer rows: beside the path": Kind(in_place.fewer_rows(False), ("deviation between ticks",), EDGE, 1.1, 10.0),
+    "fewer rows: above the sheet": Kind(
+        in_place.fewer_rows(True), ("sheet plane between ticks",), "the tolerance of chords", 1.1, 10.0
     ),
 }
 """The tool is not where it should be."""
@@ -167,6 +171,7 @@ OF_DRAWINGS: dict[str, Kind] = {
     "cuts that are not drawn": Kind(in_drawing.line_removed, ("cuts of drawn contours only",), "no cut", 1, 100),
     "another kerf in the meta": Kind(in_drawing.other_kerf, ("deviation at ticks",), PATH, 1.1, 30.0),
     "a finer tolerance in the meta": Kind(in_drawing.finer_tolerance, ("deviation at ticks",), PATH, 1.15, 5.0),
+    "a wider tolerance in the meta": Kind(in_drawing.wider_tolerance, ("process",), "nothing", 1e-9, 10.0),
     "the placement shifted": Kind(in_drawing.placement_shifted, ("deviation at ticks",), PATH, 1.1, 100.0),
     "the placement turned": Kind(in_drawing.placement_turned, ("deviation at ticks",), PATH, 1.1, 100.0),
 }
@@ -193,14 +198,10 @@ OF_CONTOURS: dict[str, Kind] = {
         in_contours.cut_said_to_be(BlockKind.ENGRAVE), ("cuts of drawn contours only",), "no cut", 1, 100
     ),
     "ended before its start": Kind(
-        in_contours.ended_early("uncut length"), ("uncut length",), "both tolerances twice and 0.2 mm", 1.1, 10.0
+        in_contours.ended_early, ("uncut length",), "both tolerances twice and 0.2 mm", 1.1, 10.0
     ),
     "an end that does not meet its start": Kind(
-        in_contours.ended_early("gap at the end of a cut"),
-        ("gap at the end of a cut",),
-        "the limit of the check",
-        1.1,
-        10.0,
+        in_contours.end_beside_start, ("gap at the end of a cut",), PATH, 1.1, 30.0
     ),
     "there and back instead of around": Kind(
         in_contours.there_and_back, ("uncut length",), "a tenth of the way", 0.4, 0.0
@@ -209,12 +210,12 @@ OF_CONTOURS: dict[str, Kind] = {
         in_contours.too_long, ("cut length",), "2 % and what the tolerances explain", 1.1, 5.0
     ),
     "a stretch cut again": Kind(in_contours.cut_again, ("material cut twice",), "1 mm", 1.2, 10.0),
-    "pierced in the part": Kind(in_contours.pierced_in_part, ("pierce outside the part",), PATH, 1.1, 30.0),
+    "pierced in the part": Kind(in_contours.pierced_in_part, ("pierce outside the part",), PATH, 1.1, 30.0, 0.9),
     "a lead-in through the part": Kind(
-        in_contours.lead_through_part(BlockKind.LEAD_IN), ("part edge",), "the limit of the check", 0.2, 2.0
+        in_contours.lead_through_part(BlockKind.LEAD_IN), ("leads outside the part",), PATH, 1.1, 30.0, 0.9
     ),
     "a lead-out through the part": Kind(
-        in_contours.lead_through_part(BlockKind.LEAD_OUT), ("part edge",), "the limit of the check", 0.2, 2.0
+        in_contours.lead_through_part(BlockKind.LEAD_OUT), ("leads outside the part",), PATH, 1.1, 30.0, 0.9
     ),
 }
 """What is cut is not what is drawn, or not in an order that keeps parts in place."""
