@@ -32,13 +32,13 @@ def show(outcomes: list[Outcome], seconds: float) -> bool:
     harmless = [trial for trial in trials if not trial.size]
     _show_kinds(trials)
     print()
-    print(f"valid programs that pass     {_share(not one.said.failed for one in planned)}")
-    print(f"harmless changes that pass   {_share(trial.right for trial in harmless)}")
+    print(f"valid programs that pass         {_share(not one.said.failed for one in planned)}")
+    print(f"harmless changes that pass       {_share(trial.right for trial in harmless)}")
     for change in HARMLESS:
-        print(f"  {change:27}{_share(trial.right for trial in harmless if trial.kind == change)}")
-    print(f"mutants found by their check {_share(trial.right for trial in mutants)}")
-    print(f"  by any check               {_share(bool(trial.said.failed) for trial in mutants)}")
-    print(f"just below, let pass by it   {_share(trial.right for trial in below)}")
+        print(f"  {change:30} {_share(trial.right for trial in harmless if trial.kind == change)}")
+    print(f"mutants found by their check     {_share(trial.right for trial in mutants)}")
+    print(f"  refused                        {_share(bool(trial.said.failed) for trial in mutants)}")
+    print(f"just below, let pass by the check {_share(trial.right for trial in below)}")
     print(f"{seconds:.0f} s")
     for one in outcomes:
         if one.refused or one.said.failed:
