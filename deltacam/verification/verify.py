@@ -30,6 +30,7 @@ CONTOUR_CHECKS: Final = (
     "part size",
     "part edge",
     "pierce outside the part",
+    "leads outside the part",
     "gap at the end of a cut",
     "inner contours first",
     "contours cut last",

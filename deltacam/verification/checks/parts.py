@@ -28,16 +28,25 @@ def pierce_outside(comparison: Comparison) -> Check:
 
     The pierces of open lines are not meant: they lie in the part that they cut into.
     """
+    return _outside(comparison, "pierce outside the part", _pierces(comparison))
+
+
+def leads_outside(comparison: Comparison) -> Check:
+    """The same at every tick of a lead to a cut or from it."""
+    return _outside(comparison, "leads outside the part", _leads(comparison))
+
+
+def _outside(comparison: Comparison, name: str, ticks: IntArray) -> Check:
+    """The check that the tool is half a kerf away from all finished parts at some ticks, to the tolerance."""
     evidence = comparison.evidence
-    process, starts, parts = evidence.program.process, _pierces(comparison), finished_parts(comparison)
-    points = shapely.points(evidence.sheet[starts])
+    process, parts, points = evidence.program.process, finished_parts(comparison), shapely.points(evidence.sheet[ticks])
     which, part = shapely.STRtree(parts).query(points, predicate="dwithin", distance=process.kerf)
     near = np.array(parts, dtype=object)[part]
     away = shapely.distance(points[which], near)
     inside = shapely.distance(points[which], shapely.boundary(near))
     depth = process.kerf / 2.0 - np.where(away > 0.0, away, -inside)
     limit = (process.tolerance + ACCURACY) * 1e6
-    return at_most(evidence, "pierce outside the part", depth * 1e6, limit, "um too near", ticks=starts[which])
+    return at_most(evidence, name, depth * 1e6, limit, "um too near", ticks=ticks[which])
 
 
 def finished_parts(comparison: Comparison) -> list[Polygon]:
@@ -59,6 +68,15 @@ def _pierces(comparison: Comparison) -> IntArray:
     piercing = evidence.kind == KINDS.index(BlockKind.PIERCE)
     starts = np.flatnonzero(piercing & (np.diff(evidence.program.block, prepend=-1) != 0))
     return np.array([row for row in starts.tolist() if evidence.block_of(row).contour not in lines], dtype=np.int64)
+
+
+def _leads(comparison: Comparison) -> IntArray:
+    """Every tick of a lead, but those of lines that are cut without a kerf beside them."""
+    evidence = comparison.evidence
+    lines = {contour.number for contour in comparison.drawing.contours if not contour.has_kerf}
+    beside = np.array([block.contour not in lines for block in evidence.program.blocks] + [True])
+    rows = np.flatnonzero(evidence.is_kind(frozenset({BlockKind.LEAD_IN, BlockKind.LEAD_OUT})))
+    return np.asarray(rows[beside[evidence.program.block[rows]]])
 
 
 def _worst(comparison: Comparison, name: str, values: list[float]) -> Check:

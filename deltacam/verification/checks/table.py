@@ -60,6 +60,7 @@ OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     parts.part_size,
     parts.part_edge,
     parts.pierce_outside,
+    parts.leads_outside,
     contours.closed,
     contours.holes_first,
     contours.contours_last,
