@@ -27,12 +27,14 @@ class Verified:
         report: what was found.
         drawing: that it was compared with, if any.
         robot: that it was checked against.
+        process: likewise.
     """
 
     program: Program
     report: Report
     drawing: Drawing | None
     robot: Robot
+    process: Process
 
 
 def verify(
@@ -79,4 +81,4 @@ def examine(
         scale = program.drawing.metres_per_unit
         part = read_drawing(path, metres_per_unit=scale, selection=program.selection)
     report = verification.verify(program, drawing=part, robot=robot, process=process)
-    return Verified(program, report, part, robot or program.robot)
+    return Verified(program, report, part, robot or program.robot, process or program.process)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -89,8 +90,9 @@ def _write_page(verified: Verified, path: Path) -> Path:
     from deltacam.program.atomic import write_whole
     from deltacam.report.html import to_html
 
-    title = Path(verified.program.drawing.file).stem
-    page = to_html(verified.report, verified.program, drawing=verified.drawing, title=title)
+    program = replace(verified.program, process=verified.process)
+    title = Path(program.drawing.file).stem
+    page = to_html(verified.report, program, drawing=verified.drawing, title=title, robot=verified.robot)
     write_whole(path, page.encode())
     return path
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import shutil
 from pathlib import Path
 from typing import Any
@@ -40,8 +41,9 @@ class Browser:
         for switch in (*_SWITCHES, f"--user-data-dir={profile}"):
             options.add_argument(switch)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        own = {**os.environ, "XDG_CONFIG_HOME": str(profile), "XDG_CACHE_HOME": str(profile)}
         # With the driver's place given selenium looks for none, and downloads none.
-        self.driver = webdriver.Chrome(options=options, service=Service(DRIVER))
+        self.driver = webdriver.Chrome(options=options, service=Service(DRIVER, env=own))
         self.command("Page.addScriptToEvaluateOnNewDocument", source=_WATCH)
 
     def command(self, name: str, **arguments: Any) -> dict[str, Any]:
