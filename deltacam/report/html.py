@@ -61,6 +61,7 @@ def _body(report: Report, evidence: Evidence, drawing: Drawing | None, figures: 
         ("Findings", sections.findings(report)),
         ("What limits the speed", held),
         ("Contours", sections.contours(evidence, drawing)),
+        ("Sizes", sections.sizes(report.sizes)),
         ("Entities of the drawing", sections.ledger(report.ledger)),
         ("All figures", table(("figure", "value"), sections.figures(report.summary))),
     )

@@ -8,11 +8,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from deltacam.model import Check, Drawing, LedgerEntry, Mode, Operation, Report
+from deltacam.model import Check, Drawing, LedgerEntry, Mode, Operation, Report, Size
 from deltacam.program.program import Program
 from deltacam.report.picture import shown, tool_speeds
 from deltacam.report.tables import table
-from deltacam.units import to_mm
+from deltacam.units import to_mm, to_um
 from deltacam.verification.checks.measure import DIFFERENCES
 from deltacam.verification.evidence import Evidence
 
@@ -108,6 +108,30 @@ def contours(evidence: Evidence, drawing: Drawing | None) -> str:
         rows.append(cells)
     heads = ("contour", "layer", "handles", "done", "length, mm", "time, s", "mean, mm/s", "largest, mm/s")
     return table(heads, rows, numbers=(4, 5, 6, 7)) if rows else ""
+
+
+def sizes(found: Sequence[Size]) -> str:
+    """What the swept kerf leaves of every closed contour that is cut."""
+    rows = [
+        [
+            str(one.contour),
+            f"{one.drawn * 1e6:.3f}",
+            f"{one.area * 1e6:.3f}",
+            f"{to_um(one.offset):.2f}",
+            f"{to_um(one.edge):.2f}",
+            ", ".join(f"{to_mm(value):.3f}" for value in one.place),
+        ]
+        for one in found
+    ]
+    heads = (
+        "contour",
+        "drawn, mm\u00b2",
+        "left, mm\u00b2",
+        "size off, \u00b5m",
+        "edge off, \u00b5m",
+        "at x, y, mm",
+    )
+    return table(heads, rows, numbers=range(1, 6)) if rows else ""
 
 
 def _handles(handles: Sequence[str]) -> str:

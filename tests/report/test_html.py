@@ -183,6 +183,16 @@ def test_a_contour_that_is_not_cut_and_a_cut_that_is_not_drawn_are_in_the_table(
     }
 
 
+def test_the_size_of_every_contour_is_shown(bench: Bench, program: Program) -> None:
+    report = verify(program, drawing=bench.drawing)
+    rows = page(report, program, bench.drawing).rows("Sizes")
+    assert [row["contour"] for row in rows] == ["1", "2", "3", "4"]
+    circle = rows[1]
+    assert float(circle["drawn, mm\u00b2"]) == pytest.approx(36.0 * np.pi, rel=1e-4)
+    assert float(circle["left, mm\u00b2"]) == pytest.approx(36.0 * np.pi, rel=2e-3)
+    assert float(circle["edge off, \u00b5m"]) == pytest.approx(1e6 * report.sizes[1].edge, abs=0.005)
+
+
 def test_many_handles_are_shortened(bench: Bench) -> None:
     contours = tuple(replace(contour, handles=tuple("ABCDE")) for contour in bench.drawing.contours)
     rows = page(REPORT, bench.program(), replace(bench.drawing, contours=contours)).rows("Contours")
