@@ -8,7 +8,6 @@ The sheets are those of scale.py, cut by irb360-1600 at 12 mm/s: 30 m are about 
 import argparse
 import itertools
 import json
-import resource
 import subprocess
 import sys
 import tempfile
@@ -46,8 +45,7 @@ def measure(program: str, drawing: str) -> None:
     marks.append(time.perf_counter())
     seconds = [after - before for before, after in itertools.pairwise(marks)]
     failed = [check.name for check in checks if not check.passed]
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(json.dumps({"rows": len(found.q), "seconds": seconds, "peak": peak, "failed": failed}))
+    print(json.dumps({"rows": len(found.q), "seconds": seconds, "peak": scale.peak_memory(), "failed": failed}))
 
 
 def show(metres: float, contours: int, folder: Path) -> None:
@@ -58,7 +56,7 @@ def show(metres: float, contours: int, folder: Path) -> None:
     drawing = folder / "sheet.dxf"
     scale.draw(scale.sheet(contours, metres), drawing)
     _, outputs = pipeline.plan_to_folder(drawing, folder, robot=scale.ROBOT, process=scale.SLOW, what_if=False)
-    for name, kept in FORMATS.items():
+    for name, kept in ((name, kept) for name, kept in FORMATS.items() if kept.whole):
         program = folder / f"sheet{kept.suffix}"
         if program != outputs.program:
             write_program(read_program(outputs.program), program)
