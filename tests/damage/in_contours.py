@@ -142,13 +142,20 @@ def pierced_in_part(case: Example, amount: float, chance: np.random.Generator) -
     return together(case.program, todo)
 
 
-def lead_through_part(kind: BlockKind) -> Make:
-    """A lead before or after a cut that comes so many tolerances nearer to the part than the beam belongs, and back."""
+def lead_through_part(kind: BlockKind, *, of_line: bool = False) -> Make:
+    """A lead before or after a cut that comes so many tolerances nearer to the part than the beam belongs, and back.
+
+    It is said to be of the contour that is cut, or of a line that has no kerf beside it.
+    """
 
     def make(case: Example, amount: float, chance: np.random.Generator) -> Program:
         todo, index, cut = _some_cut(case, chance)
+        numbers = [one.number for one in case.drawing.contours if not one.has_kerf] if of_line else [cut.block.contour]
+        if not numbers:
+            raise NoPlaceError
         way = _into_part(case, cut, amount)
-        lead = replace(cut, block=replace(cut.block, kind=kind), q=np.concatenate([way, way[-2::-1]]))
+        block = replace(cut.block, kind=kind, contour=numbers[0])
+        lead = replace(cut, block=block, q=np.concatenate([way, way[-2::-1]]))
         job = todo[index]
         todo[index] = (*job, lead) if kind is BlockKind.LEAD_OUT else (*job[:-1], lead, cut)
         return together(case.program, todo)

@@ -217,6 +217,14 @@ OF_CONTOURS: dict[str, Kind] = {
     "a lead-out through the part": Kind(
         in_contours.lead_through_part(BlockKind.LEAD_OUT), ("leads outside the part",), PATH, 1.1, 30.0, 0.9
     ),
+    "a lead of a line through the part": Kind(
+        in_contours.lead_through_part(BlockKind.LEAD_OUT, of_line=True),
+        ("leads outside the part",),
+        PATH,
+        1.1,
+        30.0,
+        0.9,
+    ),
 }
 """What is cut is not what is drawn, or not in an order that keeps parts in place."""
 

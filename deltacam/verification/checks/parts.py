@@ -32,8 +32,9 @@ def pierce_outside(comparison: Comparison) -> Check:
 
 
 def leads_outside(comparison: Comparison) -> Check:
-    """The same at every tick of a lead to a cut or from it."""
-    return _outside(comparison, "leads outside the part", _leads(comparison))
+    """The same at every tick of a lead to a cut or from it, whatever it is said to lead to."""
+    leads = np.flatnonzero(comparison.evidence.is_kind(frozenset({BlockKind.LEAD_IN, BlockKind.LEAD_OUT})))
+    return _outside(comparison, "leads outside the part", leads)
 
 
 def _outside(comparison: Comparison, name: str, ticks: IntArray) -> Check:
@@ -68,15 +69,6 @@ def _pierces(comparison: Comparison) -> IntArray:
     piercing = evidence.kind == KINDS.index(BlockKind.PIERCE)
     starts = np.flatnonzero(piercing & (np.diff(evidence.program.block, prepend=-1) != 0))
     return np.array([row for row in starts.tolist() if evidence.block_of(row).contour not in lines], dtype=np.int64)
-
-
-def _leads(comparison: Comparison) -> IntArray:
-    """Every tick of a lead, but those of lines that are cut without a kerf beside them."""
-    evidence = comparison.evidence
-    lines = {contour.number for contour in comparison.drawing.contours if not contour.has_kerf}
-    beside = np.array([block.contour not in lines for block in evidence.program.blocks] + [True])
-    rows = np.flatnonzero(evidence.is_kind(frozenset({BlockKind.LEAD_IN, BlockKind.LEAD_OUT})))
-    return np.asarray(rows[beside[evidence.program.block[rows]]])
 
 
 def _worst(comparison: Comparison, name: str, values: list[float]) -> Check:
