@@ -19,9 +19,9 @@ _NO_FEED: Final = 1e-9  # mm/s; stands for a limit that the process does not giv
 def joint_range(evidence: Evidence) -> Check:
     """No joint leaves its range; negative is inside."""
     q, joints = evidence.program.q, evidence.robot.joints
-    margin = np.degrees(np.minimum(q - joints.min, joints.max - q)) + ROUNDING_DEG
-    row, joint = (int(index) for index in np.unravel_index(np.argmin(margin), margin.shape))
-    worst = float(margin[row, joint])
+    margins = np.degrees(np.stack([q.min(axis=0) - joints.min, joints.max - q.max(axis=0)])) + ROUNDING_DEG
+    side, joint = (int(index) for index in np.unravel_index(np.argmin(margins), margins.shape))
+    worst, row = float(margins[side, joint]), int((q if side else -q)[:, joint].argmax())
     where = f"joint {joint + 1}, {evidence.place(row)}"
     return at_tick(evidence, "joint range (at least)", worst >= 0.0, worst, 0.0, "deg inside", tick=row, where=where)
 
