@@ -10,7 +10,7 @@ from deltacam.plain import plain
 from deltacam.report.text import number_in_words
 from deltacam.verification.difference import ContourDifference, Difference
 
-_SAME: Final = 1e-6  # um: less is rounding of the setpoints
+_SAME: Final = 1e-3  # um: less is rounding of the setpoints
 _MOST: Final = 20  # rows of a part that are shown
 
 
@@ -19,8 +19,8 @@ def to_text(found: Difference) -> str:
     before, after = found.durations
     lines = ["what is different", f"  time: {before:.4f} s -> {after:.4f} s ({after - before:+.4f} s)"]
     lines += _some([f"  {plain(name)}: {_value(a)} -> {_value(b)}" for name, (a, b) in found.settings.items()])
-    verdicts = [(name, _verdict(a), _verdict(b)) for name, (a, b) in found.checks.items()]
-    lines += _some([f"  {name}: {a} -> {b}" for name, a, b in verdicts if a != b])
+    checks = [(name, a, b) for name, (a, b) in found.checks.items() if _matters(a, b)]
+    lines += _some([f"  {name}: {_verdict(a)} -> {_verdict(b)}" for name, a, b in checks])
     changed = [one for one in found.contours if _differs(one)]
     lines += _some([f"  {_contour(one)}" for one in sorted(changed, key=_size, reverse=True)])
     alike = len(found.contours) - len(changed)
@@ -64,6 +64,14 @@ def _value(value: object) -> str:
     return plain(f"{value:.9g}" if isinstance(value, float) else str(value))
 
 
+def _matters(a: Check | None, b: Check | None) -> bool:
+    """Whether a check is worth a line: other verdicts, or worst values that differ by a thousandth of the limit."""
+    if a is None or b is None or a.passed is not b.passed or a.worst is None or b.worst is None:
+        return True
+    scale = max(abs(value) for value in (a.worst, b.worst, a.limit or 0.0, b.limit or 0.0))
+    return abs(a.worst - b.worst) > 1e-3 * scale
+
+
 def _verdict(check: Check | None) -> str:
     if check is None:
         return "not made"
@@ -85,6 +93,8 @@ def _contour(one: ContourDifference) -> str:
     before, after = one.times
     if before is None or after is None:
         return f"{name}: only in the {'second' if before is None else 'first'} program"
-    apart = "no positions" if one.distance is None else f"{number_in_words(one.distance * 1e6)} um apart"
+    apart = "no positions" if one.distance is None else "the same way"
+    if one.distance is not None and _size(one) > _SAME:
+        apart = f"{number_in_words(one.distance * 1e6)} um apart"
     moved = "" if one.places[0] == one.places[1] else f", cut as number {one.places[0]} -> {one.places[1]}"
     return f"{name}: {apart}, {before:.4f} s -> {after:.4f} s{moved}"

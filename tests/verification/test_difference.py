@@ -32,6 +32,13 @@ def test_the_largest_distance_of_a_contour_is_that_of_the_setpoint_that_moved(be
     assert "contour 2 (layer CUT): 50 um apart" in report.to_text(found)
 
 
+def test_a_check_whose_worst_value_hardly_differs_has_no_line(bench: Bench, program: Program) -> None:
+    found = between(bench, program, bench.but(feed=0.09999).program())
+    assert "feed while cutting" in found.checks
+    assert "feed while cutting" not in report.to_text(found)
+    assert "feed while cutting" in {check["name"] for check in report.to_dict(found)["checks"]}
+
+
 def test_settings_are_named_with_both_values(bench: Bench, program: Program) -> None:
     process = replace(program.process, feed=0.2)
     robot = replace(program.robot, geometry=replace(program.robot.geometry, forearm=0.71))
