@@ -55,9 +55,7 @@ def _show_kinds(trials: list[Trial]) -> None:
     of_kind: defaultdict[tuple[str, str], list[Trial]] = defaultdict(list)
     for trial in trials:
         of_kind[trial.kind, trial.size].append(trial)
-    print(
-        ROW.format("kind of damage", "to be found by", "just above", "far above", "otherwise", "missed", "just below")
-    )
+    print(ROW.format(*HEAD))
     for name, kind in KINDS.items():
         near, far, below = (of_kind[name, size] for size in ("near", "far", "below"))
         fates = Counter("otherwise" if trial.said.failed else "missed" for trial in near + far if not trial.right)
@@ -85,7 +83,11 @@ def main() -> None:
     work = partial(outcome, mutants=each, kinds=tuple(options.kind or KINDS))
     started = time.perf_counter()
     with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
-        outcomes = pool.map(work, seeds, chunksize=5)
+        outcomes = []
+        for one in pool.imap(work, seeds, chunksize=5):
+            outcomes.append(one)
+            if sys.stderr.isatty():
+                print(f"\r{len(outcomes)} of {len(seeds)} programs", end="", file=sys.stderr)
     sys.exit(not show(outcomes, time.perf_counter() - started))
 
 
