@@ -3,7 +3,6 @@
 import json
 import re
 from dataclasses import replace
-from html.parser import HTMLParser
 
 import numpy as np
 import pytest
@@ -15,61 +14,10 @@ from deltacam.report.page import plotly_js
 from deltacam.verification.evidence import gather
 from deltacam.verification.verify import verify
 from tests.bench import Bench
+from tests.report.parsed import Page, page
 
 HOSTILE = "</style></title><script>alert(1)</script>\"' onload=x ]]>&lt;\u202e\u2066\x00\x1b[31m\ud800\ufffe\n"
 SPELLED = "</style></title><script>alert(1)</script>\"' onload=x ]]>&lt;\\u202e\\u2066\\x00"
-VOID = {"meta", "input"}
-
-
-class Page(HTMLParser):
-    """What a browser would make of the page; refuses tags that do not nest."""
-
-    def __init__(self, content: str) -> None:
-        super().__init__(convert_charrefs=True)
-        self.open: list[str] = []
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.texts: list[tuple[str, str]] = []
-        self.tables: dict[str, list[list[str]]] = {}
-        self.folded: set[str] = set()
-        self.heading = ""
-        self.feed(content)
-        self.close()
-        assert self.open == []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attrs)))
-        if tag not in VOID and not self.get_starttag_text().endswith("/>"):
-            self.open.append(tag)
-        if tag == "h2":
-            self.heading = ""
-        elif tag == "tr":
-            self.tables.setdefault(self.heading, []).append([])
-        elif tag in ("td", "th"):
-            self.tables[self.heading][-1].append("")
-        elif tag == "details":
-            self.folded.add(self.heading)
-
-    def handle_endtag(self, tag: str) -> None:
-        if not self.tags or tag != self.tags[-1][0] or self.open[-1:] == [tag]:
-            assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        self.texts.append((self.open[-1] if self.open else "", data))
-        if self.open[-1:] == ["h2"]:
-            self.heading += data
-        if {"td", "th"} & set(self.open) and self.open[-1] != "button":
-            self.tables[self.heading][-1][-1] += data
-
-    def rows(self, heading: str) -> list[dict[str, str]]:
-        head, *rows = self.tables[heading]
-        return [dict(zip(head, row, strict=True)) for row in rows]
-
-    def all_of(self, tag: str) -> list[dict[str, str | None]]:
-        return [attributes for name, attributes in self.tags if name == tag]
-
-    def text_in(self, tag: str) -> list[str]:
-        return [text for name, text in self.texts if name == tag]
-
 
 CHECKS = (
     Check("joint range", True, worst=-3.25, limit=0.0, unit="deg", tick=800, where="joint 2"),
@@ -87,10 +35,6 @@ LEDGER = tuple(
 )
 FINDINGS = (Finding("an open chain is not cut", "layer 0, #2F", "close it"), Finding("no hint"))
 REPORT = Report(CHECKS, {"contours_cut": 4, "time_s": {"cut": 1.5}, "nothing": None}, LEDGER, FINDINGS)
-
-
-def page(report: Report, program: Program, drawing: Drawing | None = None, title: str = "plate") -> Page:
-    return Page(to_html(report, program, drawing=drawing, title=title))
 
 
 def test_the_verdict_comes_first_and_names_what_failed(program: Program) -> None:
