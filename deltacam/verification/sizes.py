@@ -34,7 +34,7 @@ def size(contour: Contour, rings: Sequence[Array], ways: Sequence[Array], *, ker
     ideal = _left([np.vstack([ring, ring[:1]]) for ring in rings], kerf, contour, drawn)
     left = _left(ways, kerf, contour, drawn)
     offset = abs(left.area - ideal.area) / ideal.length if ideal.length else 0.0
-    edge, place = _largest_gap(ideal, left)
+    edge, place = _largest_gap(ideal, left, rings, kerf / 2.0)
     return Size(contour.number, drawn.area, left.area, offset, edge, place)
 
 
@@ -58,10 +58,13 @@ def _left(ways: Sequence[Array], kerf: float, contour: Contour, drawn: Polygon) 
     return shapely.union_all(pieces[shapely.contains(drawn, shapely.point_on_surface(pieces))])
 
 
-def _largest_gap(ideal: Polygon | MultiPolygon, left: Polygon | MultiPolygon) -> tuple[float, tuple[float, float]]:
-    """The largest distance between both edges either way, m, and where it is; a sharp corner counts less.
+def _largest_gap(
+    ideal: Polygon | MultiPolygon, left: Polygon | MultiPolygon, rings: Sequence[Array], half: float
+) -> tuple[float, tuple[float, float]]:
+    """The largest distance between both edges either way, m, and where it is; less counts at a sharp corner.
 
-    A side that is shifted by d moves the tip of a corner by d over the sine of half the angle between its sides.
+    Sides that are shifted by d move the tip of a corner by d over the sine of half the angle between them. That is so
+    for the corners of the edge itself, and, ``half`` a kerf away from them, for those of the path.
     """
     edges, found = _edges(ideal), _edges(left)
     if not edges or not found:
@@ -72,14 +75,19 @@ def _largest_gap(ideal: Polygon | MultiPolygon, left: Polygon | MultiPolygon) ->
     gaps = np.concatenate(
         [exact.distance(real.samples, exact_above=_SIMPLER), real.distance(exact.samples, exact_above=_SIMPLER)]
     )
-    corners = [sharp_corners(edge, closed=True) for edge in edges]
+    share = np.minimum(_share(points, edges, _REACH * gaps), _share(points, rings, half + _REACH * gaps))
+    worst = int(np.argmax(gaps * share))
+    return float(gaps[worst] * share[worst]), (float(points[worst, 0]), float(points[worst, 1]))
+
+
+def _share(points: Array, lines: Sequence[Array], reach: Array) -> Array:
+    """The sine of half the angle at the nearest sharp corner of closed ``lines`` within ``reach`` (N,) m, else 1."""
+    corners = [sharp_corners(line, closed=True) for line in lines]
     tips, turns = np.concatenate([tip for tip, _ in corners]), np.concatenate([turn for _, turn in corners])
-    if len(tips):
-        away, tip = cKDTree(tips).query(points)
-        share = np.cos(np.minimum(turns[tip], _SHARPEST) / 2.0)
-        gaps = np.where(away <= _REACH * gaps, gaps * share, gaps)
-    worst = int(np.argmax(gaps))
-    return float(gaps[worst]), (float(points[worst, 0]), float(points[worst, 1]))
+    if not len(tips):
+        return np.ones(len(points))
+    away, tip = cKDTree(tips).query(points)
+    return np.where(away <= reach, np.cos(np.minimum(turns[tip], _SHARPEST) / 2.0), 1.0)
 
 
 def _edges(shape: Polygon | MultiPolygon) -> list[Array]:

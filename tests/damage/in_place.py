@@ -43,8 +43,8 @@ def bulge(case: Example, amount: float, chance: np.random.Generator) -> Program:
 def into_the_part(case: Example, amount: float, chance: np.random.Generator) -> Program:
     """The same towards the finished part, to so many times what the edge of a part may be off."""
     rows, way = _bump(case, chance)
-    if not case.contour(int(rows[0])).has_kerf:
-        raise NoPlaceError
+    if not case.contour(int(rows[0])).has_kerf or not _straight(case, rows):
+        raise NoPlaceError  # at a corner of the path the edge may be off by more
     here = rows[[BUMP // 2]]
     sign = np.sign(float(np.dot(_to_line(case, here)[0], way[BUMP // 2]))) or 1.0
     size = amount * _edge_limit(case) + float(case.off_path(here, case.tool[here])[0])
@@ -197,6 +197,13 @@ def _bump(case: Example, chance: np.random.Generator) -> tuple[IntArray, Array]:
     along = case.tool[rows[BUMP // 2 + 1]] - case.tool[rows[BUMP // 2 - 1]]
     side = np.array([-along[1], along[0], 0.0]) / np.hypot(along[0], along[1]) * chance.choice([-1.0, 1.0])
     return rows, np.sin(np.pi * np.arange(BUMP + 1) / BUMP)[:, np.newaxis] ** 2 * side
+
+
+def _straight(case: Example, rows: IntArray) -> bool:
+    """Whether the way has no sharp corner at these rows, and at as many before and after them."""
+    way = case.tool[max(rows[0] - BUMP, 0) : rows[-1] + BUMP + 1, :2]
+    length = float(np.hypot(*np.diff(way, axis=0).T).sum())
+    return bool(np.hypot(*(way[-1] - way[0])) >= 0.97 * length)
 
 
 def _beside_line(case: Example) -> IntArray:

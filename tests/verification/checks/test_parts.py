@@ -78,6 +78,24 @@ def test_a_tip_whose_sides_are_off_counts_as_far_as_its_sides() -> None:
     assert found.edge == pytest.approx(10e-6, rel=0.05)
 
 
+def test_a_corner_of_the_path_may_be_rounded_within_the_tolerance_and_no_more() -> None:
+    """A triangular hole whose path has corners of 60 degrees, each cut off straight at the distance d from its tip.
+
+    The edge, half a kerf further out, is off by d there, as by a path that is rounded within half of it.
+    """
+    turn = np.radians([90.0, 210.0, 330.0])
+    drawn = 5e-3 * np.column_stack([np.cos(turn), np.sin(turn)])
+    path = (5e-3 - KERF) * np.column_stack([np.cos(turn), np.sin(turn)])
+    for d in (20e-6, 60e-6):
+        cut = []
+        for corner, before, after in zip(path, np.roll(path, 1, axis=0), np.roll(path, -1, axis=0), strict=True):
+            for other in (before, after):
+                side = (other - corner) / np.linalg.norm(other - corner)
+                cut.append(corner + side * d / np.cos(np.radians(30.0)))
+        found = size(contour(curves.polygon(drawn), hole=True), [path], [np.vstack([cut, cut[:1]])], kerf=KERF)
+        assert found.edge == pytest.approx(d / 2.0, rel=0.1)
+
+
 def test_the_report_has_the_size_of_every_closed_contour_that_is_cut(bench: Bench, program: Program) -> None:
     report = verify(program, drawing=bench.drawing)
     assert [one.contour for one in report.sizes] == [1, 2, 3, 4]
