@@ -16,6 +16,7 @@ from tests.damage.rows import at_points, gathered
 
 MICROMETRE = 1e-6
 BUMP = 20  # ticks
+TRIES = 100  # of places for one
 
 Make = Callable[[Example, float, np.random.Generator], Program]
 
@@ -42,8 +43,11 @@ def bulge(case: Example, amount: float, chance: np.random.Generator) -> Program:
 
 def into_the_part(case: Example, amount: float, chance: np.random.Generator) -> Program:
     """The same towards the finished part, to so many times what the edge of a part may be off."""
-    rows, way = _bump(case, chance)
-    if not case.contour(int(rows[0])).has_kerf or not _straight(case, rows):
+    for _ in range(TRIES):
+        rows, way = _bump(case, chance)
+        if case.contour(int(rows[0])).has_kerf and _straight(case, rows):
+            break
+    else:
         raise NoPlaceError  # at a corner of the path the edge may be off by more
     here = rows[[BUMP // 2]]
     sign = np.sign(float(np.dot(_to_line(case, here)[0], way[BUMP // 2]))) or 1.0
