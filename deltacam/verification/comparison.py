@@ -6,9 +6,11 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import Final
 
+from shapely import Polygon
+
 from deltacam.model import Array, Contour, Drawing, Operation, Size
 from deltacam.verification.evidence import Evidence, Run
-from deltacam.verification.kerf_path import rings
+from deltacam.verification.kerf_path import flattened, rings
 from deltacam.verification.near import Lines
 from deltacam.verification.sizes import size
 from deltacam.verification.way import motion
@@ -42,12 +44,14 @@ class Comparison:
         drawing: read by the checker itself.
         targets: one per contour, in the drawing's order.
         sizes: what is left of every closed contour that is cut, in the same order.
+        parts: what is to stay of the sheet: every outline that is cut, without the holes directly in it.
     """
 
     evidence: Evidence
     drawing: Drawing
     targets: tuple[Target, ...]
     sizes: tuple[Size, ...]
+    parts: tuple[Polygon, ...]
 
 
 def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
@@ -55,12 +59,25 @@ def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
     runs: defaultdict[tuple[int | None, Operation], list[Run]] = defaultdict(list)
     for run in evidence.runs:
         runs[run.contour, run.operation].append(run)
-    kerf, targets, sizes = evidence.program.process.kerf, [], []
+    process, targets, sizes = evidence.program.process, [], []
+    kerf, exact_above = process.kerf, (process.tolerance + process.chord_tolerance) / 2.0
     for contour in drawing.contours:
         found = rings(contour, kerf)
         path = Lines(found, closed=contour.curve.closed) if found else None
         done = tuple(runs[contour.number, contour.operation])
         targets.append(Target(contour, found, path, done))
         if contour.has_kerf and found and done:
-            sizes.append(size(contour, found, [motion(evidence, run, _ACCURACY) for run in done], kerf=kerf))
-    return Comparison(evidence, drawing, tuple(targets), tuple(sizes))
+            ways = [motion(evidence, run, _ACCURACY) for run in done]
+            sizes.append(size(contour, found, ways, kerf=kerf, exact_above=exact_above))
+    return Comparison(evidence, drawing, tuple(targets), tuple(sizes), finished_parts(drawing))
+
+
+def finished_parts(drawing: Drawing) -> tuple[Polygon, ...]:
+    """What is to stay of the sheet: every outline that is cut, without the holes directly in it."""
+    cut = {contour.number: contour for contour in drawing.contours if contour.has_kerf}
+    lines = {number: line for number, contour in cut.items() if len(line := flattened(contour)) > 2}
+    holes: defaultdict[int | None, list[Array]] = defaultdict(list)
+    for number, line in lines.items():
+        if cut[number].is_hole:
+            holes[cut[number].parent].append(line)
+    return tuple(Polygon(line, holes[number]) for number, line in lines.items() if not cut[number].is_hole)

@@ -14,6 +14,7 @@ from deltacam.model import Array
 SPACING: Final = 0.1e-3
 """Largest distance between neighbouring samples of a line, m."""
 
+_MANY: Final = 20_000  # points: fewer are looked up before a thread has started
 _SHORTEST: Final = 1e-12  # m; shorter steps are rounding
 _MOST_SAMPLES: Final = 2_000_000  # of one set of lines; a longer one is sampled more coarsely and rechecked more often
 
@@ -70,7 +71,7 @@ class Lines:
         Returns:
             (N,) m.
         """
-        _, nearest = self._tree.query(points, workers=-1)
+        _, nearest = self._tree.query(points, workers=-1 if len(points) > _MANY else 1)
         extra = nearest >= len(self._starts)
         piece = np.where(extra, self._extra[np.where(extra, nearest - len(self._starts), 0)], nearest)
         found = np.minimum(self._to_piece(points, piece), self._to_piece(points, self._before[piece]))

@@ -19,7 +19,7 @@ _SHARPEST: Final = np.radians(170.0)  # a sharper corner of an edge is taken for
 _REACH: Final = 5.0  # how far a corner shifts an edge, in multiples of what its sides are shifted
 
 
-def size(contour: Contour, rings: Sequence[Array], ways: Sequence[Array], *, kerf: float) -> Size:
+def size(contour: Contour, rings: Sequence[Array], ways: Sequence[Array], *, kerf: float, exact_above: float) -> Size:
     """The part or hole that is left of a closed contour, beside what an exact cut would leave.
 
     An exact cut is the same with the exact path, so that a corner which no beam of this kerf reaches does not count.
@@ -29,12 +29,13 @@ def size(contour: Contour, rings: Sequence[Array], ways: Sequence[Array], *, ker
         rings: its kerf path, (K, 2) m each, the first point not repeated; at least one.
         ways: of the tool, (K, 2) m each, from start to end; at least one.
         kerf: width of the cut, m, >= 0.
+        exact_above: m; a smaller distance between the edges may be found a little too large, but stays below it.
     """
     drawn = Polygon(flattened(contour))
     ideal = _left([np.vstack([ring, ring[:1]]) for ring in rings], kerf, contour, drawn)
     left = _left(ways, kerf, contour, drawn)
     offset = abs(left.area - ideal.area) / ideal.length if ideal.length else 0.0
-    edge, place = _largest_gap(ideal, left, rings, kerf / 2.0)
+    edge, place = _largest_gap(ideal, left, rings, kerf / 2.0, exact_above)
     return Size(contour.number, drawn.area, left.area, offset, edge, place)
 
 
@@ -59,7 +60,11 @@ def _left(ways: Sequence[Array], kerf: float, contour: Contour, drawn: Polygon) 
 
 
 def _largest_gap(
-    ideal: Polygon | MultiPolygon, left: Polygon | MultiPolygon, rings: Sequence[Array], half: float
+    ideal: Polygon | MultiPolygon,
+    left: Polygon | MultiPolygon,
+    rings: Sequence[Array],
+    half: float,
+    exact_above: float,
 ) -> tuple[float, tuple[float, float]]:
     """The largest distance between both edges either way, m, and where it is; less counts at a sharp corner.
 
@@ -73,7 +78,10 @@ def _largest_gap(
     exact, real = Lines(edges, closed=True), Lines(found, closed=True)
     points = np.concatenate([real.samples, exact.samples])
     gaps = np.concatenate(
-        [exact.distance(real.samples, exact_above=_SIMPLER), real.distance(exact.samples, exact_above=_SIMPLER)]
+        [
+            exact.distance(real.samples, exact_above=exact_above),
+            real.distance(exact.samples, exact_above=exact_above),
+        ]
     )
     share = np.minimum(_share(points, edges, _REACH * gaps), _share(points, rings, half + _REACH * gaps))
     worst = int(np.argmax(gaps * share))

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
-from shapely import Polygon
 
-from deltacam.model import Array, BlockKind, Check, IntArray, Size
+from deltacam.model import BlockKind, Check, IntArray, Size
 from deltacam.verification.checks.measure import MICROMETRE, at_contour, at_most
 from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import KINDS
-from deltacam.verification.kerf_path import ACCURACY, flattened
+from deltacam.verification.kerf_path import ACCURACY
 
 
 def part_size(comparison: Comparison) -> Check:
@@ -40,7 +39,7 @@ def leads_outside(comparison: Comparison) -> Check:
 def _outside(comparison: Comparison, name: str, ticks: IntArray) -> Check:
     """The check that the tool is half a kerf away from all finished parts at some ticks, to the tolerance."""
     evidence = comparison.evidence
-    process, parts, points = evidence.program.process, finished_parts(comparison), shapely.points(evidence.sheet[ticks])
+    process, parts, points = evidence.program.process, comparison.parts, shapely.points(evidence.sheet[ticks])
     which, part = shapely.STRtree(parts).query(points, predicate="dwithin", distance=process.kerf)
     near = np.array(parts, dtype=object)[part]
     away = shapely.distance(points[which], near)
@@ -48,18 +47,6 @@ def _outside(comparison: Comparison, name: str, ticks: IntArray) -> Check:
     depth = process.kerf / 2.0 - np.where(away > 0.0, away, -inside)
     limit = (process.tolerance + ACCURACY) * 1e6
     return at_most(evidence, name, depth * 1e6, limit, "um too near", ticks=ticks[which])
-
-
-def finished_parts(comparison: Comparison) -> list[Polygon]:
-    """What is to stay of the sheet: every outline that is cut, without the holes directly in it."""
-    cut = {contour.number: contour for contour in comparison.drawing.contours if contour.has_kerf}
-    lines = {number: line for number, contour in cut.items() if len(line := flattened(contour)) > 2}
-    holes: dict[int, list[Array]] = {}
-    for number, line in lines.items():
-        parent = cut[number].parent
-        if cut[number].is_hole and parent is not None:
-            holes.setdefault(parent, []).append(line)
-    return [Polygon(line, holes.get(number)) for number, line in lines.items() if not cut[number].is_hole]
 
 
 def _pierces(comparison: Comparison) -> IntArray:

@@ -31,7 +31,7 @@ def left_of_a_circle(*, hole: bool, wrong: float, kerf: float = KERF) -> Size:
     """A circle of 5 mm that is cut ``wrong`` too far out."""
     path = 5e-3 + (-kerf if hole else kerf) / 2.0
     drawn = contour(curves.circle(np.zeros(2), 5e-3), hole=hole)
-    return size(drawn, [circle(path)[:-1]], [circle(path + wrong)], kerf=kerf)
+    return size(drawn, [circle(path)[:-1]], [circle(path + wrong)], kerf=kerf, exact_above=0.0)
 
 
 @pytest.mark.parametrize("kerf", [KERF, 0.0])
@@ -48,14 +48,14 @@ def test_a_circle_is_as_much_larger_as_its_cut(hole: bool, wrong: float, kerf: f
 
 def test_a_cut_through_the_middle_of_a_part_leaves_no_part_there() -> None:
     across = np.vstack([circle(5.2e-3), np.array([[-5.2e-3, 0.0]])])
-    found = size(contour(curves.circle(np.zeros(2), 5e-3)), [circle(5.2e-3)[:-1]], [across], kerf=KERF)
+    found = size(contour(curves.circle(np.zeros(2), 5e-3)), [circle(5.2e-3)[:-1]], [across], kerf=KERF, exact_above=0.0)
     assert found.drawn - found.area == pytest.approx(1e-2 * KERF, rel=1e-2)
     assert found.edge > 1e-3
 
 
 def test_a_part_that_is_not_cut_out_has_no_size() -> None:
     half = circle(5.2e-3)[:2000]
-    found = size(contour(curves.circle(np.zeros(2), 5e-3)), [circle(5.2e-3)[:-1]], [half], kerf=KERF)
+    found = size(contour(curves.circle(np.zeros(2), 5e-3)), [circle(5.2e-3)[:-1]], [half], kerf=KERF, exact_above=0.0)
     assert found.area == 0.0
     assert found.edge == pytest.approx(np.sqrt(np.pi) * 5e-3, rel=1e-3)
 
@@ -63,7 +63,7 @@ def test_a_part_that_is_not_cut_out_has_no_size() -> None:
 def test_an_inner_corner_that_no_beam_reaches_does_not_count() -> None:
     square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * 1e-2
     inner = np.array([(0.02, 0.02), (0.98, 0.02), (0.98, 0.98), (0.02, 0.98), (0.02, 0.02)]) * 1e-2
-    found = size(contour(curves.polygon(square), hole=True), [inner[:-1]], [inner], kerf=KERF)
+    found = size(contour(curves.polygon(square), hole=True), [inner[:-1]], [inner], kerf=KERF, exact_above=0.0)
     assert found.edge < MICRO
     assert found.drawn - found.area == pytest.approx((4.0 - np.pi) * (KERF / 2.0) ** 2, rel=1e-2)
 
@@ -74,7 +74,7 @@ def test_a_tip_whose_sides_are_off_counts_as_far_as_its_sides() -> None:
     tip = np.array([(0.0, 0.0), (np.cos(half), -np.sin(half)), (np.cos(half), np.sin(half))]) * 1e-2
     moved = np.asarray(Polygon(tip).buffer(10e-6, join_style="mitre", mitre_limit=20.0).exterior.coords)
     assert np.hypot(*moved.T).min() == pytest.approx(10e-6 / np.sin(half), rel=1e-6)
-    found = size(contour(curves.polygon(tip)), [tip], [moved], kerf=0.0)
+    found = size(contour(curves.polygon(tip)), [tip], [moved], kerf=0.0, exact_above=0.0)
     assert found.edge == pytest.approx(10e-6, rel=0.05)
 
 
@@ -92,7 +92,9 @@ def test_a_corner_of_the_path_may_be_rounded_within_the_tolerance_and_no_more() 
             for other in (before, after):
                 side = (other - corner) / np.linalg.norm(other - corner)
                 cut.append(corner + side * d / np.cos(np.radians(30.0)))
-        found = size(contour(curves.polygon(drawn), hole=True), [path], [np.vstack([cut, cut[:1]])], kerf=KERF)
+        found = size(
+            contour(curves.polygon(drawn), hole=True), [path], [np.vstack([cut, cut[:1]])], kerf=KERF, exact_above=0.0
+        )
         assert found.edge == pytest.approx(d / 2.0, rel=0.1)
 
 
