@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from deltacam.model import Array
 
 SPACING: Final = 0.1e-3
-"""Largest distance between neighbouring samples of a line, m."""
+"""Largest distance between neighbouring samples of a line where nobody says otherwise, m."""
 
 _MANY: Final = 20_000  # points: fewer are looked up before a thread has started
 _SHORTEST: Final = 1e-12  # m; shorter steps are rounding
@@ -28,16 +28,17 @@ class Lines:
     Args:
         lines: (K, 2) m each, K >= 1; at least one.
         closed: whether the last point of every line joins its first.
+        spacing: largest distance between neighbouring samples of a line, m.
 
     Attributes:
-        samples: (M, 2) m, at most `SPACING` apart along a line, both ends of an open one among them.
+        samples: (M, 2) m, at most ``spacing`` apart along a line, both ends of an open one among them.
         share: the length of line that every sample stands for, (M,) m.
     """
 
-    def __init__(self, lines: Sequence[Array], *, closed: bool) -> None:
+    def __init__(self, lines: Sequence[Array], *, closed: bool, spacing: float = SPACING) -> None:
         loops = [np.concatenate([line, line[:1]]) if closed else line for line in lines]
         total = sum(float(np.hypot(*np.diff(loop, axis=0).T).sum()) for loop in loops)
-        spacing = max(SPACING, total / _MOST_SAMPLES)
+        spacing = max(spacing, total / _MOST_SAMPLES)
         parts = [_subdivide(loop, spacing) for loop in loops]
         counts = np.array([len(part) - 1 for part in parts])
         self._starts = np.concatenate([part[:-1] for part in parts])

@@ -15,6 +15,7 @@ from deltacam.verification.kerf_path import flattened, quarter_sides, sharp_corn
 from deltacam.verification.near import Lines
 
 _SIMPLER: Final = 0.2e-6  # m; how far a way may be off so that it needs fewer points
+_SPACING: Final = 0.5e-3  # m, of samples along straight edges; a bump has vertices of its own
 _SHARPEST: Final = np.radians(170.0)  # a sharper corner of an edge is taken for this one
 _REACH: Final = 5.0  # how far a corner shifts an edge, in multiples of what its sides are shifted
 
@@ -75,7 +76,7 @@ def _largest_gap(
     if not edges or not found:
         x, y = (edges or found or [np.zeros((1, 2))])[0][0].tolist()
         return float(max(np.sqrt(ideal.area), np.sqrt(left.area))), (x, y)
-    exact, real = Lines(edges, closed=True), Lines(found, closed=True)
+    exact, real = (Lines(lines, closed=True, spacing=_SPACING) for lines in (edges, found))
     points = np.concatenate([real.samples, exact.samples])
     gaps = np.concatenate(
         [
