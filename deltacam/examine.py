@@ -77,7 +77,7 @@ def examine(
         process = load_process(process)
     part = None
     if drawing is not None:
-        path = Path(drawing) / program.drawing.file if Path(drawing).is_dir() else drawing
+        path = Path(drawing) / Path(program.drawing.file).name if Path(drawing).is_dir() else drawing
         scale = program.drawing.metres_per_unit
         part = read_drawing(path, metres_per_unit=scale, selection=program.selection)
     report = verification.verify(program, drawing=part, robot=robot, process=process)

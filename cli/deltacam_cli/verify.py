@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import click
 
 from deltacam.errors import DeltacamError
 from deltacam_cli.main import EXIT_FAILED, EXIT_INPUT, LONGEST_MESSAGE, refused, show_json
+from deltacam_cli.progress import ProgressLine
 
 if TYPE_CHECKING:
     from deltacam.examine import Verified
@@ -55,13 +57,17 @@ def command(
     several = len(programs) > 1
     if several and against is not None:
         raise click.UsageError("--against compares one program with one other")
+    pages = {} if html is None else _pages(html, programs, drawing)
     given: dict[str, Any] = {"drawing": drawing, "robot": robot, "process": process}
     results = []
-    for path in programs:
+    for count, path in enumerate(programs):
         try:
-            verified = examine(path, **given)
-            page = None if html is None else _write_page(verified, _page(html, path, several=several))
-            different = None if against is None else _difference(verified, against, given)
+            with ProgressLine() as progress:
+                progress("verify", count, len(programs))
+                verified = examine(path, **given)
+                different = None if against is None else _difference(verified, against, given)
+                if path in pages:
+                    _write_page(verified, pages[path])
         except DeltacamError as problem:
             if not several:
                 raise
@@ -71,22 +77,35 @@ def command(
         results.append(_listed(path, verified, different, passed=passed))
         if not as_json:
             _show(path, verified, different, every_check=every_check, strict=strict, several=several)
-            _say_wrote(page)
+            _say_wrote(pages.get(path))
     _finish(results, as_json=as_json)
 
 
-def _page(html: Path, program: Path, *, several: bool) -> Path:
-    """Where the page of a program goes: in the folder ``html`` where there are several."""
-    if not several:
-        return html
+def _pages(html: Path, programs: tuple[Path, ...], drawing: Path | None) -> dict[Path, Path]:
+    """Where the page of every program goes: in the folder ``html`` where there are several.
+
+    Raises:
+        DeltacamError: pages would overwrite each other, or what they are made from; or there can be no such folder.
+    """
+    if len(programs) == 1:
+        for read in (*programs, *filter(None, (drawing,))):
+            if html.exists() and read.exists() and html.samefile(read):
+                what, hint = "the page would overwrite what it is made from", "give it a name of its own: part.html"
+                raise DeltacamError(what, where=f"--html {html}", hint=hint)
+        return {programs[0]: html}
     from deltacam.program.formats import name_of
     from deltacam.program.outputs import make_folder
 
+    pages = {path: html / f"{name_of(path)}.report.html" for path in programs}
+    twice = [page.name for page, count in Counter(pages.values()).items() if count > 1]
+    if twice:
+        what, hint = f"several programs would write {twice[0]}", "verify programs of one name one by one"
+        raise DeltacamError(what, where=f"--html {html}", hint=hint)
     make_folder(html)
-    return html / f"{name_of(program)}.report.html"
+    return pages
 
 
-def _write_page(verified: Verified, path: Path) -> Path:
+def _write_page(verified: Verified, path: Path) -> None:
     from deltacam.program.atomic import write_whole
     from deltacam.report.html import to_html
 
@@ -94,7 +113,6 @@ def _write_page(verified: Verified, path: Path) -> Path:
     title = Path(program.drawing.file).stem
     page = to_html(verified.report, program, drawing=verified.drawing, title=title, robot=verified.robot)
     write_whole(path, page.encode())
-    return path
 
 
 def _difference(verified: Verified, against: Path, given: Mapping[str, Any]) -> Difference:

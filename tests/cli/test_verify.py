@@ -120,6 +120,29 @@ def test_the_page_is_written_where_it_is_wanted(folder: Path, tmp_path: Path) ->
     assert "failed</title>" in (tmp_path / "pages" / "edited.report.html").read_text()
 
 
+def test_a_page_overwrites_nothing_that_it_is_made_from(folder: Path) -> None:
+    program = folder / "new" / "gear.program.csv"
+    before = program.read_bytes()
+    run = deltacam("verify", program, "--html", program, folder=folder)
+    assert (run.returncode, program.read_bytes()) == (2, before)
+    assert "the page would overwrite what it is made from" in run.stderr
+    twice = ["new/bracket.program.csv", "old/bracket.program.csv", "--html", "pages"]
+    run = deltacam("verify", *twice, folder=folder)
+    assert run.returncode == 2
+    assert "several programs would write bracket.report.html" in run.stderr
+    assert not (folder / "pages").exists()
+
+
+def test_a_folder_of_drawings_is_not_left_by_what_a_program_says(folder: Path, tmp_path: Path) -> None:
+    shutil.copy(SAMPLES / "gear.dxf", tmp_path)
+    (tmp_path / "inside").mkdir()
+    text = (folder / "new" / "gear.program.csv").read_text().replace('"file":"gear.dxf"', '"file":"../gear.dxf"')
+    (tmp_path / "away.program.csv").write_text(text)
+    run = deltacam("verify", "away.program.csv", "--drawing", "inside", folder=tmp_path)
+    assert run.returncode == 2
+    assert "there is no such file" in run.stderr
+
+
 def test_against_says_what_is_different(folder: Path) -> None:
     programs = "new/bracket.program.csv", "--against", "old/bracket.program.csv"
     run = deltacam("verify", *programs, folder=folder)
