@@ -106,13 +106,22 @@ def _pages(html: Path, programs: tuple[Path, ...], drawing: Path | None) -> dict
 
 
 def _write_page(verified: Verified, path: Path) -> None:
+    """Write the page, whole or not at all.
+
+    Raises:
+        DeltacamError: the operating system refuses.
+    """
     from deltacam.program.atomic import write_whole
     from deltacam.report.html import to_html
 
     program = replace(verified.program, process=verified.process)
     title = Path(program.drawing.file).stem
     page = to_html(verified.report, program, drawing=verified.drawing, title=title, robot=verified.robot)
-    write_whole(path, page.encode())
+    try:
+        write_whole(path, page.encode())
+    except DeltacamError as problem:
+        hint = "choose another file with --html, in a folder that exists"
+        raise DeltacamError(problem.what, where=problem.where, hint=hint) from problem
 
 
 def _difference(verified: Verified, against: Path, given: Mapping[str, Any]) -> Difference:

@@ -133,6 +133,12 @@ def test_a_page_overwrites_nothing_that_it_is_made_from(folder: Path) -> None:
     assert not (folder / "pages").exists()
 
 
+def test_a_page_that_cannot_be_written_is_said_with_the_option(folder: Path) -> None:
+    run = deltacam("verify", "new/gear.program.csv", "--html", "missing/gear.html", folder=folder)
+    assert run.returncode == 2
+    assert "hint: choose another file with --html" in run.stderr
+
+
 def test_a_folder_of_drawings_is_not_left_by_what_a_program_says(folder: Path, tmp_path: Path) -> None:
     shutil.copy(SAMPLES / "gear.dxf", tmp_path)
     (tmp_path / "inside").mkdir()
