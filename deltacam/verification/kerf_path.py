@@ -6,6 +6,7 @@ half the kerf; what is engraved or open is followed on the line itself.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -17,6 +18,7 @@ from deltacam.model import Array, Contour
 ACCURACY: Final = 0.3e-6
 """Largest distance of a ring from the exact kerf path, m."""
 
+_SHARPEST: Final = np.radians(170.0)
 _SAGITTA: Final = 0.1e-6  # of the flattened contour, and of the round joins at its corners, m
 
 
@@ -69,3 +71,13 @@ def sharp_corners(ring: Array, *, closed: bool) -> tuple[Array, Array]:
     if not closed:
         sharp[[0, -1]] = False
     return ring[sharp], turn[sharp]
+
+
+def all_corners(lines: Sequence[Array], *, closed: bool) -> tuple[Array, Array]:
+    """The `sharp_corners` of all ``lines``, at least one: (M, 2) m, and by how much they turn, (M,) rad.
+
+    What is allowed at a corner grows with its turn; one that is sharper than 170 degrees is taken for that.
+    """
+    found = [sharp_corners(line, closed=closed) for line in lines]
+    turns = np.concatenate([turn for _, turn in found])
+    return np.concatenate([corner for corner, _ in found]), np.minimum(turns, _SHARPEST)

@@ -11,12 +11,11 @@ from scipy.spatial import cKDTree
 from shapely import LineString, MultiPolygon, Polygon
 
 from deltacam.model import Array, Contour, Size
-from deltacam.verification.kerf_path import flattened, quarter_sides, sharp_corners
+from deltacam.verification.kerf_path import all_corners, flattened, quarter_sides
 from deltacam.verification.near import Lines
 
 _SIMPLER: Final = 0.2e-6  # m; how far a way may be off so that it needs fewer points
 _SPACING: Final = 0.5e-3  # m, of samples along straight edges; a bump has vertices of its own
-_SHARPEST: Final = np.radians(170.0)  # a sharper corner of an edge is taken for this one
 _REACH: Final = 5.0  # how far a corner shifts an edge, in multiples of what its sides are shifted
 
 
@@ -91,12 +90,11 @@ def _largest_gap(
 
 def _share(points: Array, lines: Sequence[Array], reach: Array) -> Array:
     """The sine of half the angle at the nearest sharp corner of closed ``lines`` within ``reach`` (N,) m, else 1."""
-    corners = [sharp_corners(line, closed=True) for line in lines]
-    tips, turns = np.concatenate([tip for tip, _ in corners]), np.concatenate([turn for _, turn in corners])
+    tips, turns = all_corners(lines, closed=True)
     if not len(tips):
         return np.ones(len(points))
     away, tip = cKDTree(tips).query(points)
-    return np.where(away <= reach, np.cos(np.minimum(turns[tip], _SHARPEST) / 2.0), 1.0)
+    return np.where(away <= reach, np.cos(turns[tip] / 2.0), 1.0)
 
 
 def _edges(shape: Polygon | MultiPolygon) -> list[Array]:

@@ -116,7 +116,9 @@ def line_energy(evidence: Evidence) -> Check:
         (process.engrave_power or process.power) / (process.engrave_feed or process.feed),
         process.power / process.feed,
     )
-    return at_most(evidence, "energy per mm", found / usual, None, "times that at the feed", ticks=ticks)
+    # A file may state a process without power: then nothing is usual, and `laser_on` says what is wrong.
+    times = np.divide(found, usual, out=np.zeros_like(found), where=usual > 0.0)
+    return at_most(evidence, "energy per mm", times, None, "times that at the feed", ticks=ticks)
 
 
 def _pierced_for(evidence: Evidence, run: Run, start: IntArray) -> float:

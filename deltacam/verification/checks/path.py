@@ -11,14 +11,12 @@ from deltacam.model import Array, Check, IntArray
 from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison, Target
 from deltacam.verification.evidence import Evidence, Run, to_sheet
-from deltacam.verification.kerf_path import ACCURACY, sharp_corners
+from deltacam.verification.kerf_path import ACCURACY, all_corners, sharp_corners
 from deltacam.verification.near import Lines
 from deltacam.verification.way import motion
 
 LENGTH_TOLERANCE: Final = 0.02
 """How much longer or shorter than its kerf path a cut may be, beside what the tolerances allow."""
-
-_SHARPEST: Final = np.radians(170.0)  # a sharper corner gets no more allowance than this one
 
 
 def deviation(comparison: Comparison) -> Check:
@@ -68,13 +66,9 @@ def cut_length(comparison: Comparison) -> Check:
         off = max(abs(length - nominal) - slack, 0.0) / nominal if nominal else float(length > 0.0)
         percent = 100.0 * off
         if target.runs and percent > (worst.worst or 0.0):
-            words, tick = (
-                f"{target.contour.where}: {1e3 * length:.3f} mm for {1e3 * nominal:.3f} mm",
-                target.runs[0].first,
-            )
-            worst = at_tick(
-                comparison.evidence, name, percent <= limit, percent, limit, "% off", tick=tick, where=words
-            )
+            words = f"{target.contour.where}: {1e3 * length:.3f} mm for {1e3 * nominal:.3f} mm"
+            passed, tick = percent <= limit, target.runs[0].first
+            worst = at_tick(comparison.evidence, name, passed, percent, limit, "% off", tick=tick, where=words)
     return worst
 
 
@@ -133,10 +127,9 @@ def _in_rounded_corner(target: Target, points: Array, distance: Array, near: flo
     """Which ``points`` (M, 2) lie so close to a sharp corner that rounding it may leave them at ``distance``, (M,)."""
     if not len(points):
         return np.zeros(0, dtype=bool)
-    found = [sharp_corners(ring, closed=target.contour.curve.closed) for ring in target.rings]
-    corners = np.concatenate([corner for corner, _ in found])
+    corners, turns = all_corners(target.rings, closed=target.contour.curve.closed)
     if not len(corners):
         return np.zeros(len(points), dtype=bool)
-    half = np.minimum(np.concatenate([turn for _, turn in found]), _SHARPEST) / 2.0
+    half = turns / 2.0
     away, corner = cKDTree(corners).query(points)
     return np.asarray((away <= near * (1.0 + np.tan(half[corner]))) & (distance <= near / np.cos(half[corner])))

@@ -59,3 +59,9 @@ def test_a_rest_of_some_ticks_adds_its_energy(bench: Bench, program: Program) ->
     rested = with_a_rest(program, 200)
     found = bench.check(verify(rested, drawing=None), "energy per mm")
     assert found.worst == pytest.approx(200 / 400.0 * bench.process.feed / 1e-3 + 1.0, rel=0.1)
+
+
+def test_a_process_without_power_is_no_fault(bench: Bench, program: Program) -> None:
+    report = verify(replace(program, process=replace(program.process, power=0.0)), drawing=bench.drawing)
+    assert bench.failed(report) == {"laser on in all cuts"}
+    assert bench.check(report, "energy per mm").worst == 0.0
