@@ -162,7 +162,7 @@ def complex_inverse(robot: Robot, points: Array) -> Array:
         y, z = points[:, 1] * np.cos(azimuth) - points[:, 0] * np.sin(azimuth), points[:, 2]
         k = (x * x + y * y + z * z + upper**2 - forearm**2) / (2 * upper)
         t = np.sqrt(x * x + z * z - k * k)
-        columns.append((np.log((x * k - z * t) - 1j * (z * k + x * t)) - np.log(x * x + z * z) / 2) / 1j)
+        columns.append((np.log((x * k - z * t) - 1j * (z * k + x * t)) - np.log(x * x + z * z)) / 1j)
     return np.stack(columns, axis=-1)
 
 
