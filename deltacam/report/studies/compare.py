@@ -48,8 +48,8 @@ def study_of_robots(profiles: Sequence[Profile], producers: Sequence[Produced]) 
         profiles: robots that can be planned for.
         producers: the table of producers.
     """
-    heads = ("robot", "R - r, mm", "upper arm, mm", "forearm, mm", "sheet, mm", "joint speed, deg/s", "limits")
-    heads = (*heads, "condition", "pressure, deg", _ERROR)
+    sizes = ("robot", "R - r, mm", "upper arm, mm", "forearm, mm", "sheet, mm", "joint speed, deg/s", "limits")
+    heads = (*sizes, "condition", "pressure, deg", _ERROR)
     return Study(
         title="Delta robots side by side",
         facts=(("built-in or given", f"{len(profiles)} robots"), ("published", f"{len(producers)} robots")),
