@@ -49,7 +49,7 @@ def matrix_bounds(rows: Array, curvatures: Array, third: Array, half: Array) -> 
     """
     rho = float(np.linalg.norm(half))
     rest = 0.5 * rho**2 * np.linalg.norm(third, axis=1)
-    inverse = np.linalg.inv(rows)
+    inverse: Array = np.linalg.inv(rows).astype(np.float64)
     along = np.moveaxis(curvatures, 3, 1) * half[:, np.newaxis, np.newaxis]  # (N, axis, row, column)
     there = np.einsum("ca,naij->ncij", _CORNERS, along)
     back = inverse[:, np.newaxis] @ there @ inverse[:, np.newaxis]
@@ -66,4 +66,4 @@ def matrix_bounds(rows: Array, curvatures: Array, third: Array, half: Array) -> 
 def _norm(matrices: Array) -> Array:
     """The largest singular value of matrices (..., 3, 3)."""
     square = np.swapaxes(matrices, -1, -2) @ matrices
-    return np.asarray(np.sqrt(np.linalg.eigvalsh(square)[..., -1]))
+    return np.asarray(np.sqrt(np.linalg.eigvalsh(square)[..., -1]), dtype=np.float64)

@@ -119,7 +119,7 @@ def pose_bounds(geometry: DeltaGeometry, centres: Array, half: Array) -> PoseBou
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Cells:
-    """N cells seen from the arms: half sides (3,) m and their length, and of every middle x, y, z, hyp and k, (N, 3)."""
+    """N cells seen from the arms: half sides (3,) m, their length, and of every middle x, y, z, hyp and k (N, 3)."""
 
     geometry: DeltaGeometry
     half: Array
@@ -158,7 +158,7 @@ class _Cells:
         return Interval(*scaled), self._drive(far * near, low, high, self.span(kx, ky, kz) + drop)
 
     def _drive(self, square: Array, low: Array, high: Array, change: Array) -> Interval:
-        """t from its square, the bounds of hyp - k and hyp + k, and the largest change of k; 0 out of reach."""
+        """The drive t from its square, the bounds of hyp - k and hyp + k, and the largest change of k; 0 out of reach."""
         La, rho, x, y, z, k = self.geometry.upper_arms, self.rho, self.x, self.y, self.z, self.k
         slope = self.span(2.0 * (x - k * x / La), -2.0 * k * y / La, 2.0 * (z - k * z / La))
         least = square - slope - change**2 - np.maximum(k, 0.0) * rho**2 / La

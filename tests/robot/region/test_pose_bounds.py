@@ -25,7 +25,9 @@ def geometries(draw: st.DrawFn) -> DeltaGeometry:
     upper = draw(lengths)
     fore = draw(st.tuples(*[st.floats(1.0, 3.0)] * 3))
     base = draw(st.floats(0.0, 0.4))
-    mount = Mount(draw(st.floats(-0.1, 0.1)), 0.05, draw(st.floats(0.0, 1.0)), draw(st.floats(-3.0, 3.0)), draw(st.booleans()))
+    mount = Mount(
+        draw(st.floats(-0.1, 0.1)), 0.05, draw(st.floats(0.0, 1.0)), draw(st.floats(-3.0, 3.0)), draw(st.booleans())
+    )
     azimuths = draw(st.sampled_from([(-1.5, 0.5, 2.6), (2.6, 0.5, -1.5), (0.0, 1.8, 3.4)]))
     same = draw(st.booleans())
     forearm = upper * fore[0] if same else tuple(upper * ratio for ratio in fore)
