@@ -91,7 +91,7 @@ def plan(
         unit: what the drawing's numbers are, where the file does not say or is wrong: "mm", "in", ...
         default_unit: what they are where neither the file nor ``unit`` says.
         selection: which layers count, and how far apart ends may be; the rules are those of the process.
-        at: where the centre of what is cut comes to lie, base frame, m.
+        at: where the centre of what is cut comes to lie, machine frame, m.
         rotation: of the drawing about that centre, rad, counter-clockwise.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
         jobs: how many processes plan the motion, >= 1; None takes as many as pay. The program is the same for any.
