@@ -9,7 +9,7 @@ from typing import Final
 
 from deltacam.errors import RobotError
 from deltacam.robot.bounds import BOUNDS, Bound
-from deltacam.robot.dimensions import STANDARD_AZIMUTHS
+from deltacam.robot.dimensions import HANGING, STANDARD_AZIMUTHS
 from deltacam.robot.robot import Robot
 
 _DIGITS: Final = 17  # of a decimal number that is any float
@@ -21,9 +21,10 @@ _SHEET: Final = ("sheet_z", "width", "depth", "radius")
 
 _SECTIONS: Final[dict[str, str]] = {
     "geometry": "lengths are between the centres of the joints; only base radius - effector radius decides the motion",
+    "mount": "how the base stands in the machine: turned over about x, then turned about z, then moved",
     "joints": "0 is the upper arm horizontal and outwards, positive is down",
     "tool": "what the tool may do in any direction",
-    "workspace": "the sheet, in the robot's frame: z is up, 0 at the axes of the joints",
+    "workspace": "the sheet, in the machine: z is up; the axes of the joints are at 0 unless [mount] moves them",
     "controller": "how the program is played",
 }
 _DERIVED: Final = "not given, so derived from [tool] when the file is read: "
@@ -95,6 +96,7 @@ def _sections(robot: Robot) -> dict[str, dict[str, str]]:
     """The keys of every section with their values as TOML has them."""
     return {
         "geometry": _geometry(robot),
+        **({} if robot.geometry.mount == HANGING else {"mount": _mount(robot)}),
         "joints": _joints(robot),
         "tool": {
             BOUNDS[f"tool_{name}"].key: decimal(BOUNDS[f"tool_{name}"], getattr(robot.tool, name))
@@ -126,8 +128,17 @@ def _geometry(robot: Robot) -> dict[str, str]:
 def _radius(part: str, value: float | Sequence[float]) -> tuple[str, str]:
     """The key and the text of a radius: by the side of its triangle only where that alone gives the same float."""
     radius, side = BOUNDS[f"{part}_radius"], BOUNDS[f"{part}_side"]
-    bound = side if not _is_exact(radius, value) and _is_exact(side, value) else radius
+    bound = side if isinstance(value, float) and not _is_exact(radius, value) and _is_exact(side, value) else radius
     return bound.key, _numbers(bound, value)
+
+
+def _mount(robot: Robot) -> dict[str, str]:
+    mount = robot.geometry.mount
+    found = {
+        BOUNDS[f"mount_{name}"].key: decimal(BOUNDS[f"mount_{name}"], getattr(mount, name))
+        for name in ("x", "y", "z", "rotation")
+    }
+    return {**found, "upside_down": "true" if mount.upside_down else "false"}
 
 
 def _joints(robot: Robot) -> dict[str, str]:

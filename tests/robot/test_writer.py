@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from deltacam.errors import RobotError
 from deltacam.robot.bounds import BOUNDS
+from deltacam.robot.dimensions import Mount, Triple
 from deltacam.robot.reader import load_robot, profile_names
 from deltacam.robot.robot import Controller, JointLimits, Robot
 from deltacam.robot.writer import decimal, to_toml
@@ -79,7 +80,36 @@ def test_a_built_in_robot_reads_back_as_itself(name: str) -> None:
     assert (again.description, again.source) == (robot.description, robot.source)
 
 
-@given(file_robots())
+@st.composite
+def mounted_robots(draw: st.DrawFn) -> Robot:
+    """Robots whose arms differ, and whose base may be turned, moved and upside down."""
+    robot = draw(file_robots())
+
+    def lengths(name: str, value: float) -> Triple:
+        one, two, three = (BOUNDS[name].to_si(value + draw(SMALL_CHANGES)) for _ in range(3))
+        return one, two, three
+
+    z, up = draw(st.floats(-1000.0, 1000.0)), draw(st.booleans())
+    mount = Mount(
+        x=BOUNDS["mount_x"].to_si(draw(SMALL_CHANGES)),
+        y=BOUNDS["mount_y"].to_si(draw(SMALL_CHANGES)),
+        z=BOUNDS["mount_z"].to_si(z),
+        rotation=BOUNDS["mount_rotation"].to_si(draw(st.floats(-360.0, 360.0))),
+        upside_down=up,
+    )
+    geometry = replace(
+        robot.geometry,
+        base_radius=lengths("base_radius", 130.0),
+        effector_radius=lengths("effector_radius", 35.0),
+        upper_arm=lengths("upper_arm", 300.0),
+        forearm=lengths("forearm", 700.0),
+        mount=mount,
+    )
+    sheet_z = BOUNDS["sheet_z"].to_si(z + (650.0 if up else -650.0))
+    return replace(robot, geometry=geometry, workspace=replace(robot.workspace, sheet_z=sheet_z))
+
+
+@given(st.one_of(file_robots(), mounted_robots()))
 def test_a_robot_of_a_file_reads_back_as_itself(robot: Robot) -> None:
     again = read_back(to_toml(robot))
     assert again == robot
