@@ -124,6 +124,6 @@ def _jacobian(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
 
 def _largest_gain(matrices: Array) -> Array:
     """The largest singular values of ``matrices`` (N, M, 3): (N,), inf for those that hold nan."""
-    known: BoolArray = np.isfinite(matrices).all(axis=(1, 2))
+    known: BoolArray = np.asarray(np.isfinite(matrices).all(axis=(1, 2)))
     values = np.linalg.svd(np.where(known.reshape(-1, 1, 1), matrices, 0.0), compute_uv=False)
     return np.where(known, values[:, 0], np.inf)
