@@ -9,6 +9,7 @@ import click
 from deltacam_cli.main import LateGroup
 
 COMMANDS: Final = {
+    "budget": "Show how exactly ROBOT can cut.",
     "show": "Show what ROBOT can do over its sheet.",
 }
 """The commands and their short help; a command ``x`` is ``deltacam_cli.robot.x:command``."""
