@@ -10,6 +10,7 @@ from deltacam_cli.main import LateGroup
 
 COMMANDS: Final = {
     "compare": "Compare robots, side by side for DRAWING.",
+    "budget": "Show how exactly ROBOT can cut.",
     "show": "Show what ROBOT can do over its sheet.",
 }
 """The commands and their short help; a command ``x`` is ``deltacam_cli.robot.x:command``."""
