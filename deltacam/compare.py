@@ -15,7 +15,8 @@ from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_proces
 from deltacam.drawing.reader import read_drawing
 from deltacam.errors import DeltacamError, InfeasibleError
 from deltacam.model import EVERYTHING, Check, Process
-from deltacam.robot.figures import ARCMIN, Outcome, tool_error
+from deltacam.robot.comparison import ARCMIN, Outcome
+from deltacam.robot.measures import tool_error_per_joint_error
 from deltacam.robot.reader import load_robot, profile_names
 from deltacam.robot.robot import Robot
 
@@ -101,7 +102,7 @@ def _measured(robot: Robot, planned: pipeline.Planned, turn: float) -> Outcome:
         duration=program.duration,
         laser=float(lit.sum()) / robot.controller.rate_hz,
         binds=tuple(sorted(shares, key=lambda item: (-item[1], item[0]))),
-        error=float(tool_error(robot, points).max()) * ARCMIN if lit.any() else None,
+        error=float(tool_error_per_joint_error(robot.geometry, points).max()) * ARCMIN if lit.any() else None,
         tightest=_tightest(report.checks),
     )
 

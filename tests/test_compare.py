@@ -10,9 +10,9 @@ from click.testing import CliRunner
 from deltacam import compare as comparing
 from deltacam.errors import DeltacamError
 from deltacam.pipeline import plan
-from deltacam.robot.figures import profiles, tool_error
+from deltacam.robot.comparison import profiles
 from deltacam.robot.producers import GRADES
-from deltacam.robot.reader import load_robot, profile_names
+from deltacam.robot.reader import profile_names
 from deltacam_cli.main import cli
 
 GEAR = Path(__file__).parents[1] / "samples" / "gear.dxf"
@@ -51,16 +51,6 @@ def _small(folder: Path) -> Path:
 def test_a_drawing_that_cannot_be_read_is_an_error_and_not_a_row() -> None:
     with pytest.raises(DeltacamError):
         comparing.compare("no-such-file.dxf", ["delta-300"])
-
-
-def test_the_tool_error_is_the_largest_over_all_joint_errors_of_that_size() -> None:
-    robot, step = load_robot("rl5-1450"), 1e-6
-    points = robot.workspace.grid(5)
-    q = robot.inverse(points)
-    errors = np.random.default_rng(3).normal(size=(4000, 3))
-    errors *= step / np.linalg.norm(errors, axis=1)[:, np.newaxis]
-    moved = [np.linalg.norm(robot.forward(q + error) - points, axis=1) / step for error in errors]
-    assert tool_error(robot, points) == pytest.approx(np.max(moved, axis=0), rel=5e-3)
 
 
 def test_every_built_in_robot_has_its_figures() -> None:

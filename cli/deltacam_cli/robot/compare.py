@@ -41,7 +41,7 @@ def command(
     from deltacam.report.studies import compare as studies
 
     if drawing is None:
-        from deltacam.robot.figures import profiles
+        from deltacam.robot.comparison import profiles
         from deltacam.robot.producers import read_producers
 
         show(studies.study_of_robots(profiles(robots), read_producers()), as_json=as_json, html=html)

@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 from deltacam.report.charts import scatter_chart
 from deltacam.report.study import Study, Table
-from deltacam.robot.figures import Outcome, Profile
+from deltacam.robot.comparison import Outcome, Profile
 from deltacam.robot.producers import UNITS, Produced
 
-_MISSING = "-"
-_ERROR = "tool error per arcmin, um"
+_MISSING: Final = "-"
+_ERROR: Final = "tool error per arcmin, um"
+
+_PUBLISHED: Final = {
+    "workspace diameter, mm": ("workspace_diameter", 1e3),
+    "payload, kg": ("payload", 1.0),
+    "repeatability, mm": ("repeatability", 1e3),
+    "speed, m/s": ("speed", 1.0),
+    "acceleration, m/s2": ("acceleration", 1.0),
+    "cycle, s": ("cycle", 1.0),
+}
+"""The columns of the table of producers: the quantity, and the factor from SI."""
 
 
 def study_of_outcomes(drawing: str, outcomes: Sequence[Outcome]) -> Study:
@@ -55,9 +65,7 @@ def study_of_robots(profiles: Sequence[Profile], producers: Sequence[Produced]) 
         facts=(("built-in or given", f"{len(profiles)} robots"), ("published", f"{len(producers)} robots")),
         tables=(
             Table("Robots that can be planned for", heads, tuple(_figures(one) for one in profiles)),
-            Table(
-                "Robots as published", ("maker", "model", *UNITS, "grade"), tuple(_published(one) for one in producers)
-            ),
+            Table("Robots as published", ("maker", "model", *_PUBLISHED, "grade"), tuple(map(_published, producers))),
         ),
         notes=tuple(f"{one.name}: {one.robot.source}" for one in profiles if one.robot.source),
         data={"robots": [_profile_data(one) for one in profiles], "producers": [_produced(one) for one in producers]},
@@ -96,8 +104,9 @@ def _figures(one: Profile) -> tuple[str, ...]:
 
 
 def _published(one: Produced) -> tuple[str, ...]:
-    published = dict(one.published)
-    return (one.maker, one.model, *(published.get(quantity, _MISSING) for quantity in UNITS), one.grade)
+    values = ((getattr(one, quantity), factor) for quantity, factor in _PUBLISHED.values())
+    shown = (_MISSING if value is None else f"{value * factor:g}" for value, factor in values)
+    return (one.maker, one.model, *shown, one.grade)
 
 
 def _data(one: Outcome) -> dict[str, Any]:

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
-from deltacam.model import Array
+from deltacam.robot.measures import tool_error_per_joint_error
 from deltacam.robot.reader import load_robot, profile_names
 from deltacam.robot.robot import Robot
 
@@ -76,14 +74,6 @@ def profiles(robots: Sequence[str | Path] = ()) -> tuple[Profile, ...]:
     return tuple(_profile(load_robot(name)) for name in robots or profile_names())
 
 
-def tool_error(robot: Robot, points: Array) -> Array:
-    """The largest tool error per norm of the three joint errors, (N,) m/rad: the largest singular value of J.
-
-    It is one over the smallest singular value of the inverse Jacobian.
-    """
-    return np.asarray(1.0 / np.linalg.svd(robot.inverse_jacobian(points), compute_uv=False)[:, -1])
-
-
 def _profile(robot: Robot) -> Profile:
     sheet, points = robot.workspace, robot.workspace.grid()
     half = sheet.radius if sheet.radius is not None else min(sheet.width or 0.0, sheet.depth or 0.0) / 2.0
@@ -92,6 +82,6 @@ def _profile(robot: Robot) -> Profile:
         robot=robot,
         reach=2.0 * half,
         condition=float(1.0 / robot.inverse_condition(points).min()),
-        error=float(tool_error(robot, points).max()) * ARCMIN,
+        error=float(tool_error_per_joint_error(robot.geometry, points).max()) * ARCMIN,
         pressure=float(max(mu.max() for mu in robot.pressure_angles(points))),
     )
