@@ -175,7 +175,12 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
     how.progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
     placement.refuse_outside(
-        shifted.cuts, robot=robot, placement=where, unit=part.unit_in_words, metres_per_unit=part.metres_per_unit
+        shifted.cuts,
+        contours=part.contours,
+        robot=robot,
+        placement=where,
+        unit=part.unit_in_words,
+        metres_per_unit=part.metres_per_unit,
     )
     moves = (_frame if how.mode is Mode.FRAME else _cutting)(part, shifted.cuts, how, where)
     program = Program(
