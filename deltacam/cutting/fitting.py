@@ -153,11 +153,17 @@ class Footprint:
         yield from _NICE
         yield self.best_turn(sheet)[0]
 
-    def spot(self, sheet: Workspace, at: tuple[float, float], rotation: float) -> Spot | None:
+    def excess_at(self, sheet: Workspace, at: tuple[float, float], rotation: float) -> float:
+        """By how much the part leaves the sheet at a place, m; 0 where it does not."""
+        return float(sheet.excess(self.turned(rotation) + np.array(at)).max())
+
+    def spot(
+        self, sheet: Workspace, at: tuple[float, float], rotation: float, digits: Sequence[int] = DIGITS
+    ) -> Spot | None:
         """A place and a turn, m and rad, with the fewest digits with which the part is on the sheet; else None."""
-        for digits in DIGITS:
-            x, y = (_written(to_mm(value), digits) for value in at)
-            spot = Spot(x, y, _written(float(np.degrees(rotation)), digits))
+        for count in digits:
+            x, y = (_written(to_mm(value), count) for value in at)
+            spot = Spot(x, y, _written(float(np.degrees(rotation)), count))
             if self.holds(sheet, spot.rotation, np.array([spot.at]))[0]:
                 return spot
         return None

@@ -17,6 +17,7 @@ import numpy as np
 from deltacam.model import Array, IntArray
 from deltacam.motion.rows import limits_at
 from deltacam.placing.sampled import Sampled
+from deltacam.robot import measures
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
@@ -103,7 +104,7 @@ class _Motion(NamedTuple):
             limit = np.asarray(robot.joints.max_jerk)
             bound = np.minimum(bound, np.min(limit / third, axis=1) ** (2.0 / 3.0))
             jerk = np.min(limit / steep, axis=1)
-        error = np.linalg.norm(np.linalg.inv(robot.inverse_jacobian(points[0]))[:, :2], ord=2, axis=(1, 2))
+        error = measures.tool_error_per_joint_error_in_plane(robot.geometry, points[0])
         width = sampled.width * route.path.length[sampled.segment]
         return cls(width, acceleration / steep, second * np.sign(first) / steep, tool, bend, bound, jerk, error)
 
@@ -151,10 +152,9 @@ def _time(sampled: Sampled, motion: _Motion, squared: Array) -> Array:
     speed = np.sqrt(squared)
     taken = 2.0 * motion.width / np.maximum(speed[behind] + speed[behind + 1], _TINY)
     pushed = (squared[behind + 1] - squared[behind]) / (2.0 * motion.width)
-    none = np.zeros((1, squared.shape[1]))
     before = np.where((moves == np.roll(moves, 1))[:, None], np.roll(pushed, 1, axis=0), 0.0)
     last = sampled.first[1:] - 1
     fastest = np.maximum.reduceat(speed, sampled.first[:-1] + np.arange(len(counts)), axis=0)[moves]
     lost = np.maximum(pushed - before, 0.0) / (2.0 * motion.jerk) * (1.0 - speed[behind] / np.maximum(fastest, _TINY))
     stop = np.maximum(-pushed[last], 0.0) / (2.0 * motion.jerk[last])
-    return np.asarray((taken + lost).sum(axis=0) + stop.sum(axis=0) + none[0])
+    return np.asarray((taken + lost).sum(axis=0) + stop.sum(axis=0))
