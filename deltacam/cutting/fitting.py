@@ -19,7 +19,7 @@ from shapely.geometry.polygon import orient
 
 from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
-from deltacam.model import Array, Cut, readonly
+from deltacam.model import Array, BoolArray, Cut, readonly
 from deltacam.units import parse_angle, parse_length, to_mm
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class Footprint:
         middle = 0.5 * (low + high)
         return Places(np.minimum(low, middle), np.maximum(high, middle), excess)
 
-    def holds(self, sheet: Workspace, rotation: float, at: Array) -> Array:
+    def holds(self, sheet: Workspace, rotation: float, at: Array) -> BoolArray:
         """Whether the part lies on the sheet at places ``at`` (N, 2) m, (N,)."""
         places = self.places(sheet, rotation)
         if sheet.radius is None:

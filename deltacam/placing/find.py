@@ -27,7 +27,7 @@ By = Literal["both", "time", "accuracy"]
 
 WISHES: Final[tuple[By, ...]] = get_args(By)
 
-PLANNED: Final = 5
+PLANNED: Final = 8
 """How many places are planned, beside the centre."""
 
 SAMPLES: Final = 2_000_000
@@ -70,7 +70,7 @@ class Maps:
         turn: (T,) rad, at the best place.
         time_by_turn: (T,) s.
         worst_by_turn: (T,) m/rad.
-        excess_by_turn: (T,) m, by how much the part leaves the sheet at that turn in its best place; <= 0 where it fits.
+        excess_by_turn: (T,) m, by how much the part leaves the sheet there in the best place; <= 0 where it fits.
         estimated: how many places and turns were estimated.
     """
 
@@ -145,14 +145,14 @@ def find(task: Task, *, by: By = "both", progress: Callable[[int, int], None] = 
         step = trials.step / 2.0 ** (k + 1)
         search.add(*about(search.at[seeds], search.rotation[seeds], step, part, sheet))
     spots = [part.spot(sheet, _pair(search.at[one]), float(search.rotation[one])) for one in search.best()]
-    planned = []
+    planned: list[Candidate] = []
     for spot in dict.fromkeys(spot for spot in (search.centre, *spots) if spot is not None):
         progress(len(trials.at) + len(planned), total)
         about_it = search.estimate(np.array([spot.at]), np.array([spot.rotation]))
         worst, rms = float(about_it.worst[0]), float(about_it.rms[0])
         planned.append(Candidate(spot, task.duration(spot.at, spot.rotation), worst, rms))
-    time, worst = (np.array([getattr(one, name) for one in planned]) for name in ("time", "worst"))
-    order = np.argsort(search.score(time, worst, (time[0], worst[0])), kind="stable")
+    times, errors = np.array([one.time for one in planned]), np.array([one.worst for one in planned])
+    order = np.argsort(search.score(times, errors, (planned[0].time, planned[0].worst)), kind="stable")
     best = tuple(planned[k] for k in order.tolist())
     progress(total, total)
     excess = max(0.0, part.excess_at(sheet, (0.0, 0.0), 0.0))
@@ -228,13 +228,21 @@ class _Search:
         turn = np.linspace(0.0, 2.0 * np.pi, _TURNS_SHOWN + 1)
         at = np.array([best.spot.at])
         held = np.array([bool(part.holds(sheet, one, at)[0]) for one in turn.tolist()])
-        by_turn = [np.full(len(turn), np.nan), np.full(len(turn), np.nan)]
+        time_by_turn, worst_by_turn = np.full(len(turn), np.nan), np.full(len(turn), np.nan)
         if held.any():
             found = self.estimate(np.repeat(at, int(held.sum()), axis=0), turn[held])
-            by_turn[0][held], by_turn[1][held] = found.time, found.worst
-        shaped = [np.where(np.isfinite(one), one, np.nan).reshape(side, side) for one in (time, worst)]
-        excess = np.array([part.places(sheet, one).excess for one in turn.tolist()])
-        return Maps(trials.x, trials.y, *shaped, turn, *by_turn, excess, len(self.at))
+            time_by_turn[held], worst_by_turn[held] = found.time, found.worst
+        return Maps(
+            x=trials.x,
+            y=trials.y,
+            time=np.where(np.isfinite(time), time, np.nan).reshape(side, side),
+            worst=np.where(np.isfinite(worst), worst, np.nan).reshape(side, side),
+            turn=turn,
+            time_by_turn=time_by_turn,
+            worst_by_turn=worst_by_turn,
+            excess_by_turn=np.array([part.places(sheet, one).excess for one in turn.tolist()]),
+            estimated=len(self.at),
+        )
 
 
 def _extent(robot: Robot) -> float:

@@ -14,13 +14,13 @@ import numpy as np
 
 from deltacam.model import Array, BoolArray, IntArray, Placement
 from deltacam.motion.path import Path, join, straight
-from deltacam.motion.route import Limits, Route
+from deltacam.motion.route import Route
 from deltacam.motion.schedule import Move
 
-_SPACING: Final = 2.5e-3
+_SPACING: Final = 2.5e-3  # of intervals, m
 _FEWEST: Final = 4
 _MOST: Final = 32
-_PER_RAMP: Final = 1
+_PER_RAMP: Final = 1  # the middle of the three clothoids of a blend has its largest curvature all along
 _HERE: Final = 1e-9
 
 
@@ -52,12 +52,19 @@ class Sampled:
 
     @classmethod
     def of(
-        cls, moves: Sequence[tuple[Move, bool]], *, at: tuple[float, float], rotation: float, park: Array, resting: float
+        cls,
+        moves: Sequence[tuple[Move, bool]],
+        *,
+        at: tuple[float, float],
+        rotation: float,
+        park: Array,
+        resting: float,
     ) -> Sampled:
         """The motion of moves, each with whether it cuts, that were made for a place and a turn, m and rad."""
         paths = [(path, move.limits, works) for move, works in moves for path in move.paths]
         inner = [one for k, one in enumerate(paths) if one[2] or 0 < k < len(paths) - 1]
-        back = Placement(*(-_turn(-rotation) @ np.array(at)), rotation=-rotation, z=0.0)
+        x, y = -_turn(-rotation) @ np.array(at)
+        back = Placement(float(x), float(y), rotation=-rotation, z=0.0)
         own = [(_moved(path, back), limits) for path, limits, _ in inner]
         ends = np.array([own[0][0].start[0], _end(own[-1][0])])
         way = straight(np.zeros(2), np.array([1.0, 0.0]), own[0][0].z)
