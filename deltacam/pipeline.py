@@ -94,7 +94,7 @@ def plan(
         unit: what the drawing's numbers are, where the file does not say or is wrong: "mm", "in", ...
         default_unit: what they are where neither the file nor ``unit`` says.
         selection: which layers count, and how far apart ends may be; the rules are those of the process.
-        at: where the centre of what is cut comes to lie, base frame, m.
+        at: where the centre of what is cut comes to lie, machine frame, m.
         rotation: of the drawing about that centre, rad, counter-clockwise.
         place: what the place and the rotation are chosen by, as `best_places` finds them; None takes those given.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.

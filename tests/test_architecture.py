@@ -23,7 +23,7 @@ MAY_IMPORT = {
     "placing": {"errors", "units", "model", "geometry", "robot", "cutting", "motion"},
     "program": {"errors", "units", "model", "geometry", "robot"},
     "verification": {"errors", "units", "model", "geometry", "robot", "drawing", "program"},
-    "report": {"errors", "plain", "units", "model", "geometry", "robot", "program", "verification"},
+    "report": {"errors", "plain", "units", "model", "geometry", "robot", "program", "verification", "placing"},
     "inspection": {"errors", "plain", "units", "model", "geometry"},
     "examine": {"errors", "model", "robot", "drawing", "cutting", "program", "verification"},
     "pipeline": {

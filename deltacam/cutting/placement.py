@@ -31,7 +31,7 @@ def place(contours: Sequence[Contour], *, robot: Robot, at: tuple[float, float],
     Args:
         contours: what is cut or engraved, sheet frame, m.
         robot: gives the height of the sheet.
-        at: base frame, m.
+        at: machine frame, m.
         rotation: rad, counter-clockwise.
     """
     centre = bounding_box(contours).mean(axis=0)
@@ -93,6 +93,7 @@ def refuse_outside(
 
 
 def _placed(cuts: Sequence[Cut], placement: Placement) -> tuple[Array, IntArray]:
+<<<<<<< HEAD
     """Points (N, 2) m along the cuts, base frame, and the index of the cut that each is on, (N,)."""
     points, owner = rings.flatten(Pack.of(cut.curve for cut in cuts), FLATTENING)
     return points @ _turn(placement.rotation).T + (placement.x, placement.y), owner
@@ -147,13 +148,19 @@ def refuse_everywhere(part: Footprint, *, robot: Robot) -> None:
 def _turn(rotation: float) -> Array:
     cos, sin = np.cos(rotation), np.sin(rotation)
     return np.array([[cos, -sin], [sin, cos]])
+=======
+    """Points (N, 2) m along the cuts, machine frame, and the index of the cut that each is on, (N,)."""
+    points, owner = rings.flatten(Pack.of(cut.curve for cut in cuts), _FLATTENING)
+    cos, sin = np.cos(placement.rotation), np.sin(placement.rotation)
+    return points @ np.array([[cos, sin], [-sin, cos]]) + (placement.x, placement.y), owner
+>>>>>>> main
 
 
 def _fitting_unit(points: Array, robot: Robot, drawn: Array, metres_per_unit: float) -> str:
     """What to do about a part that is too large for the sheet and would not be in another unit; else empty.
 
     Args:
-        points: of all cuts, (N, 2) m, base frame.
+        points: of all cuts, (N, 2) m, machine frame.
         robot: gives the sheet.
         drawn: the part's width and height in the drawing's own numbers.
         metres_per_unit: that were used.

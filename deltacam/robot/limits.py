@@ -23,7 +23,7 @@ def joint_speed_demand(geometry: DeltaGeometry, points: Array, *, speed: float) 
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
         speed: of the tool, m/s.
 
     Returns:
@@ -43,7 +43,7 @@ def joint_acceleration_demand(geometry: DeltaGeometry, points: Array, *, speed: 
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
         speed: of the tool, m/s.
         acceleration: of the tool, m/s^2.
 

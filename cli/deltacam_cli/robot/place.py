@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,6 +11,9 @@ from deltacam_cli import options
 from deltacam_cli.planning import JOBS, planning_options, settings
 from deltacam_cli.progress import ProgressLine
 from deltacam_cli.studies import show, study_options
+
+if TYPE_CHECKING:
+    from deltacam.placing.find import By
 
 
 @click.command("place", no_args_is_help=True)
@@ -25,7 +28,7 @@ from deltacam_cli.studies import show, study_options
 @planning_options
 @click.option("--jobs", type=JOBS, help="Processes for planning; the result is the same. 0: as many as pay.")
 @study_options
-def command(drawing: Path, *, by: str, jobs: int | None, as_json: bool, html: Path | None, **values: Any) -> None:
+def command(drawing: Path, *, by: By, jobs: int | None, as_json: bool, html: Path | None, **values: Any) -> None:
     """Find where on the sheet, and how turned, DRAWING (a DXF file) is cut fastest and most accurately.
 
     Many places and turns are estimated, the best are planned in full, and compared with the centre of the sheet.
@@ -40,4 +43,4 @@ def command(drawing: Path, *, by: str, jobs: int | None, as_json: bool, html: Pa
     own = options.defaults()
     with ProgressLine() as progress:
         found, robot = best_places(drawing, by=by, jobs=jobs or None, progress=progress, **settings(own, **values))
-    show(study(found, robot=robot, drawing=drawing.name), as_json=as_json, html=html)
+    show(study(found, robot=robot, drawing=str(drawing)), as_json=as_json, html=html)

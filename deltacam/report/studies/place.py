@@ -104,7 +104,7 @@ def _notes(found: Found) -> tuple[str, ...]:
             f"with {shares} the part fits nowhere, at worst by {to_mm(found.maps.excess_by_turn.max()):.3f} mm"
         )
     notes.append(
-        "times are planned; the maps are estimates, mostly within a few percent, and better for comparing than for reading"
+        "the times of the places are planned; those in the maps are estimates, to compare places by"
     )
     return tuple(notes)
 
