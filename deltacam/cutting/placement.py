@@ -93,8 +93,7 @@ def refuse_outside(
 
 
 def _placed(cuts: Sequence[Cut], placement: Placement) -> tuple[Array, IntArray]:
-<<<<<<< HEAD
-    """Points (N, 2) m along the cuts, base frame, and the index of the cut that each is on, (N,)."""
+    """Points (N, 2) m along the cuts, machine frame, and the index of the cut that each is on, (N,)."""
     points, owner = rings.flatten(Pack.of(cut.curve for cut in cuts), FLATTENING)
     return points @ _turn(placement.rotation).T + (placement.x, placement.y), owner
 
@@ -148,12 +147,6 @@ def refuse_everywhere(part: Footprint, *, robot: Robot) -> None:
 def _turn(rotation: float) -> Array:
     cos, sin = np.cos(rotation), np.sin(rotation)
     return np.array([[cos, -sin], [sin, cos]])
-=======
-    """Points (N, 2) m along the cuts, machine frame, and the index of the cut that each is on, (N,)."""
-    points, owner = rings.flatten(Pack.of(cut.curve for cut in cuts), _FLATTENING)
-    cos, sin = np.cos(placement.rotation), np.sin(placement.rotation)
-    return points @ np.array([[cos, sin], [-sin, cos]]) + (placement.x, placement.y), owner
->>>>>>> main
 
 
 def _fitting_unit(points: Array, robot: Robot, drawn: Array, metres_per_unit: float) -> str:
