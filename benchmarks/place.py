@@ -67,8 +67,10 @@ def quality(part: Path, unit: str | None, robot: Robot, found: Found) -> tuple[f
 
 def main() -> None:
     """Place every part on every robot."""
-    print("part       robot              best place                       time s at centre, best   gain   "
-          "error um/mrad   gain  search s  rank  estimate/plan")
+    print(
+        "part       robot              best place                       time s at centre, best   gain   "
+        "error um/mrad   gain  search s  rank  estimate/plan"
+    )
     for label, robot in robots().items():
         for name, (path, unit) in PARTS.items():
             if sys.argv[1:] and name not in sys.argv[1:]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
+from deltacam.report.charts import heat_map, line_chart
+from deltacam.report.study import Chart, Study, Table
 
 from deltacam.model import Array
 from deltacam.placing.find import Candidate, Found
-from deltacam.report.charts import heat_map, line_chart
-from deltacam.report.study import Chart, Study, Table
 from deltacam.robot.robot import Robot
 from deltacam.units import to_mm
 
@@ -103,9 +103,7 @@ def _notes(found: Found) -> tuple[str, ...]:
         notes.append(
             f"with {shares} the part fits nowhere, at worst by {to_mm(found.maps.excess_by_turn.max()):.3f} mm"
         )
-    notes.append(
-        "the times of the places are planned; those in the maps are estimates, to compare places by"
-    )
+    notes.append("the times of the places are planned; those in the maps are estimates, to compare places by")
     return tuple(notes)
 
 
