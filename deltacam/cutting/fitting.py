@@ -67,7 +67,7 @@ class Places(NamedTuple):
     Attributes:
         low: (2,) m, the smallest x and y that any of them has.
         high: (2,) m, the largest.
-        excess: m, by how much the part leaves the sheet at the best place; negative is room to spare, 0 or more is none.
+        excess: m, by how much the part leaves the sheet at the best place; negative is room to spare.
     """
 
     low: Array

@@ -111,6 +111,7 @@ class Found:
         centre: the part at the centre of the sheet, unturned or else turned; None where it does not fit there.
         excess: m, by how much it leaves the sheet there unturned; 0 where it fits.
         maps: the estimates.
+        task: what was asked for.
     """
 
     by: By
@@ -118,6 +119,7 @@ class Found:
     centre: Candidate | None
     excess: float
     maps: Maps
+    task: Task
 
     def gain(self, one: Candidate) -> tuple[float, float] | None:
         """How much less time and how much less error than at the centre, as shares; None where there is no centre."""
@@ -156,7 +158,7 @@ def find(task: Task, *, by: By = "both", progress: Callable[[int, int], None] = 
     best = tuple(planned[k] for k in order.tolist())
     progress(total, total)
     excess = max(0.0, part.excess_at(sheet, (0.0, 0.0), 0.0))
-    return Found(by, best, planned[0] if search.centre else None, excess, search.maps(trials, best[0]))
+    return Found(by, best, planned[0] if search.centre else None, excess, search.maps(trials, best[0]), task)
 
 
 class _Search:

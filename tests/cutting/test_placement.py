@@ -48,8 +48,8 @@ def hint(width: float, height: float, metres: float, *, at: tuple[float, float] 
     """What to do about a part of so many units that leaves the sheet."""
     part = contour(rectangle(width * metres, height * metres, at=(5.0, -3.0)))
     where = place([part], robot=ROBOT, at=at, rotation=0.3)
+    cuts = offset([part], kerf=0.0).cuts
     with pytest.raises(InfeasibleError) as caught:
-        cuts = offset([part], kerf=0.0).cuts
         refuse_outside(cuts, contours=[part], robot=ROBOT, placement=where, unit="x", metres_per_unit=metres)
     return caught.value.hint
 

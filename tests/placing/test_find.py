@@ -77,7 +77,8 @@ def test_planning_with_auto_is_planning_at_the_best_place_byte_for_byte(robot: R
 
 def test_a_part_that_fits_only_turned_is_turned() -> None:
     whole = load_robot("delta-300")
-    small = replace(whole, workspace=replace(whole.workspace, width=0.07, depth=0.07))
+    sheet = replace(whole.workspace, width=0.07, depth=0.07)
+    small = replace(whole, workspace=sheet, joints=replace(whole.joints, max_jerk=None))
     with pytest.raises(InfeasibleError, match="leaves the sheet") as caught:
         plan(PART, robot=small)
     assert "turn it: --rotate" in caught.value.hint
@@ -92,6 +93,6 @@ def test_a_part_that_fits_only_turned_is_turned() -> None:
 def test_a_part_that_fits_nowhere_is_refused_by_how_much() -> None:
     whole = load_robot("delta-300")
     small = replace(whole, workspace=replace(whole.workspace, width=0.05, depth=0.05))
-    with pytest.raises(InfeasibleError, match="fits nowhere .* mm, and that turned by") as caught:
+    with pytest.raises(InfeasibleError, match=r"fits nowhere .* mm, and that turned by") as caught:
         best_places(PART, robot=small)
     assert "--robot" in caught.value.hint
