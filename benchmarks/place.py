@@ -1,6 +1,6 @@
 """Prints what a better place on the sheet gains over its centre, and how good the estimate is.
 
-Both places are planned and verified. The error of the tool is that of the program: the largest at any tick with the laser on.
+Both places are planned and verified. The error of the tool is that of the program: the largest with the laser on.
 """
 
 import sys
@@ -49,7 +49,7 @@ def error(planned: Planned) -> float:
 
 
 def quality(robot: Robot, found: Found) -> tuple[float, float, float]:
-    """Of the estimate at places of the map, turned as the best: rank correlation, least and largest share of the plan."""
+    """Of the estimate, turned as the best place: rank correlation, least and largest share of the planned time."""
     best, sampled = found.best[0].spot, found.maps
     places = np.stack(np.meshgrid(sampled.x, sampled.y), axis=-1).reshape(-1, 2)
     task = found.task

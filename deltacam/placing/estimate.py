@@ -5,7 +5,8 @@ with the limits as they are in the middle of each interval. All moves and many p
 
 A limit of jerk is allowed for afterwards. It holds the speed v below (J / |q'''|)^(1/3), and rounds every corner of the
 speed over time. Where the acceleration jumps up by du, the motion cannot be faster than before the jump, and so it
-loses the time du / 2j (1 - v / V), with j the jerk along the path and V the speed that is lost.
+loses the time du / 2j (1 - v / V), with j the jerk along the path and V the largest speed of the move; du is at most
+what builds up and down again within the change of speed, sqrt(j (V - v)).
 """
 
 from __future__ import annotations
@@ -155,6 +156,13 @@ def _time(sampled: Sampled, motion: _Motion, squared: Array) -> Array:
     before = np.where((moves == np.roll(moves, 1))[:, None], np.roll(pushed, 1, axis=0), 0.0)
     last = sampled.first[1:] - 1
     fastest = np.maximum.reduceat(speed, sampled.first[:-1] + np.arange(len(counts)), axis=0)[moves]
-    lost = np.maximum(pushed - before, 0.0) / (2.0 * motion.jerk) * (1.0 - speed[behind] / np.maximum(fastest, _TINY))
-    stop = np.maximum(-pushed[last], 0.0) / (2.0 * motion.jerk[last])
+    slower = np.maximum(fastest - speed[behind], 0.0)
+    rise = np.minimum(np.maximum(pushed - before, 0.0), _most(slower, motion.jerk))
+    lost = rise / (2.0 * motion.jerk) * slower / np.maximum(fastest, _TINY)
+    stop = np.minimum(np.maximum(-pushed[last], 0.0), _most(fastest[last], motion.jerk[last])) / (2.0 * motion.jerk[last])
     return np.asarray((taken + lost).sum(axis=0) + stop.sum(axis=0))
+
+
+def _most(change: Array, jerk: Array) -> Array:
+    """The largest acceleration on the way through a ``change`` of the speed, m/s2; infinite without a limit of jerk."""
+    return np.sqrt(np.where(np.isfinite(jerk), np.where(np.isfinite(jerk), jerk, 1.0) * change, np.inf))
