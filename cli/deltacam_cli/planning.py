@@ -13,7 +13,6 @@ from deltacam_cli import options
 if TYPE_CHECKING:
     from deltacam.defaults import Defaults
     from deltacam.model import Process
-    from deltacam.robot.robot import Robot
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -67,19 +66,12 @@ def settings(
     """
     selection = options.selection(own, layers=layers, ignored_layers=ignored_layers, join=join, accept_loss=accept_loss)
     return {
-        "robot": options.with_jerk(_robot(robot, own), jerk),
+        "robot": options.with_jerk(options.robot(robot, own), jerk),
         "process": _process(process, own, **single_values),
         "unit": options.unit("--units", units),
         "default_unit": own.units,
         "selection": selection,
     }
-
-
-def _robot(name: str | None, own: Defaults) -> Robot:
-    from deltacam.pipeline import DEFAULT_ROBOT
-    from deltacam.robot.reader import load_robot
-
-    return options.load(load_robot, name, own.robot, DEFAULT_ROBOT, f"{own.file}: robot")
 
 
 def _process(

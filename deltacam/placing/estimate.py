@@ -159,7 +159,9 @@ def _time(sampled: Sampled, motion: _Motion, squared: Array) -> Array:
     slower = np.maximum(fastest - speed[behind], 0.0)
     rise = np.minimum(np.maximum(pushed - before, 0.0), _most(slower, motion.jerk))
     lost = rise / (2.0 * motion.jerk) * slower / np.maximum(fastest, _TINY)
-    stop = np.minimum(np.maximum(-pushed[last], 0.0), _most(fastest[last], motion.jerk[last])) / (2.0 * motion.jerk[last])
+    stop = np.minimum(np.maximum(-pushed[last], 0.0), _most(fastest[last], motion.jerk[last])) / (
+        2.0 * motion.jerk[last]
+    )
     return np.asarray((taken + lost).sum(axis=0) + stop.sum(axis=0))
 
 

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from deltacam_cli.studies import show, study_options
 
 from deltacam_cli import options
 from deltacam_cli.planning import JOBS, planning_options, settings
 from deltacam_cli.progress import ProgressLine
+from deltacam_cli.studies import show, study_options
 
 if TYPE_CHECKING:
     from deltacam.placing.find import By

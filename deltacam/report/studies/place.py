@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
-from deltacam.report.charts import heat_map, line_chart
-from deltacam.report.study import Chart, Study, Table
 
 from deltacam.model import Array
 from deltacam.placing.find import Candidate, Found
+from deltacam.report.charts import heat_map, line_chart
+from deltacam.report.study import Chart, Study, Table
 from deltacam.robot.robot import Robot
 from deltacam.units import to_mm
 
