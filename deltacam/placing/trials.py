@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from deltacam.cutting.fitting import Footprint
+from deltacam.cutting.fitting import Footprint, Places
 from deltacam.model import Array, IntArray
 
 if TYPE_CHECKING:
     from deltacam.robot.workspace import Workspace
 
-TURN: Final = np.radians(15.0)
-"""From one turn of the grid to the next, rad."""
-
-_SIDES: Final = (9, 7, 5, 3)
+_GRIDS: Final = ((9, 24), (7, 24), (5, 24), (5, 12), (5, 8), (3, 8))  # places to a side, and turns
 _OWN: Final = 3
 
 
@@ -30,6 +27,7 @@ class Trials:
         x: (M,) m, the columns of the grid.
         y: (M,) m, its rows.
         cell: (N,) the place on the grid, row by row; -1 for what is beside it.
+        turns: how many turns a full one is divided into.
     """
 
     at: Array
@@ -37,11 +35,12 @@ class Trials:
     x: Array
     y: Array
     cell: IntArray
+    turns: int
 
     @property
     def step(self) -> Array:
         """From one place of the grid to the next along x and y, m, and from one turn to the next, rad, (3,)."""
-        return np.array([self.x[1] - self.x[0], self.y[1] - self.y[0], TURN])
+        return np.array([self.x[1] - self.x[0], self.y[1] - self.y[0], 2.0 * np.pi / self.turns])
 
 
 def grid(part: Footprint, sheet: Workspace, *, most: int) -> Trials:
@@ -49,12 +48,12 @@ def grid(part: Footprint, sheet: Workspace, *, most: int) -> Trials:
 
     Turns with little room get a few places of their own, and so does the turn with the most room.
     """
-    best, _ = part.best_turn(sheet)
-    turns = np.unique(np.concatenate([np.arange(0.0, 2.0 * np.pi - 1e-9, TURN), [best, best + np.pi]]))
-    rooms = [(turn, room) for turn in turns.tolist() if (room := part.places(sheet, turn)).any]
+    for side, count in _GRIDS:
+        rooms = _rooms(part, sheet, count)
+        if side**2 * len(rooms) <= most:
+            break
     low = np.min([room.low for _, room in rooms], axis=0)
     high = np.maximum(np.max([room.high for _, room in rooms], axis=0), low + 1e-6)
-    side = next((side for side in _SIDES if side**2 * len(rooms) <= most), _SIDES[-1])
     x, y = np.linspace(low[0], high[0], side), np.linspace(low[1], high[1], side)
     lattice = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     at, rotation, cell = [], [], []
@@ -66,7 +65,14 @@ def grid(part: Footprint, sheet: Workspace, *, most: int) -> Trials:
         at.append(places[held])
         rotation.append(np.full(len(held), turn))
         cell.append(np.where(held < len(lattice), held, -1))
-    return Trials(np.concatenate(at), np.concatenate(rotation), x, y, np.concatenate(cell))
+    return Trials(np.concatenate(at), np.concatenate(rotation), x, y, np.concatenate(cell), count)
+
+
+def _rooms(part: Footprint, sheet: Workspace, count: int) -> list[tuple[float, Places]]:
+    """The turns with which the part fits, of ``count`` all around and those with the most room, and where it does."""
+    best, _ = part.best_turn(sheet)
+    turns = np.unique([*(2.0 * np.pi * np.arange(count) / count), best, best + np.pi])
+    return [(turn, room) for turn in turns.tolist() if (room := part.places(sheet, turn)).any]
 
 
 def about(at: Array, rotation: Array, step: Array, part: Footprint, sheet: Workspace) -> tuple[Array, Array]:

@@ -118,7 +118,7 @@ def _jacobian(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
     lengths = np.linalg.norm(forearms, axis=2)
     volume = np.linalg.det(forearms / lengths[:, :, np.newaxis])
     held = (np.abs(volume) > SINGULAR).reshape(-1, 1, 1)
-    drive = geometry.upper_arm * arms.t
+    drive = geometry.upper_arms * arms.t
     return np.where(held, np.linalg.inv(np.where(held, forearms, np.eye(3))) * drive[:, np.newaxis], np.nan)
 
 
