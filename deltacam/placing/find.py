@@ -30,7 +30,7 @@ WISHES: Final[tuple[By, ...]] = get_args(By)
 PLANNED: Final = 8
 """How many places are planned, beside the centre."""
 
-SAMPLES: Final = 2_000_000
+SAMPLES: Final = 4_000_000
 """About how many intervals are looked at on the grid: the more a path has, the coarser is the grid."""
 
 _ROUNDS: Final = 4
