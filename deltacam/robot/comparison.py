@@ -42,27 +42,27 @@ class Outcome:
 
     Attributes:
         name: of the robot.
-        fits: whether the whole drawing lies on the sheet, about its centre, at any of `TURNS`.
+        fits: whether the whole drawing lies on the sheet, moved or turned where it must be.
         passed: whether a program was planned and every check of it passed.
         reason: why not; empty where it passed.
-        rotation: of the drawing at which it was planned, rad; None where it was not.
-        duration: of the program, s; None where there is none. This and the rest likewise.
+        at: where the centre of the drawing lies, m; None where no program was planned, as all that follows.
+        rotation: of the drawing about it, rad.
+        duration: of the program, s.
         laser: time with the laser on, s.
         binds: the limits that hold the contours back, with their share of the time along them, the largest first.
         error: largest tool error over the cut for a joint-error vector of norm 1 arcmin, m.
-        tightest: the check that uses most of its limit, and the share of it.
     """
 
     name: str
     fits: bool
     passed: bool
     reason: str = ""
+    at: tuple[float, float] | None = None
     rotation: float | None = None
     duration: float | None = None
     laser: float | None = None
     binds: tuple[tuple[str, float], ...] = ()
     error: float | None = None
-    tightest: tuple[str, float] | None = None
 
 
 def profiles(robots: Sequence[str | Path] = ()) -> tuple[Profile, ...]:

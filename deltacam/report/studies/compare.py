@@ -32,7 +32,7 @@ def study_of_outcomes(drawing: str, outcomes: Sequence[Outcome]) -> Study:
         drawing: its name.
         outcomes: one per robot.
     """
-    heads = ("robot", "fits", "passed", "turned, deg", "time, s", "laser on, s", "binds most", _ERROR, "tightest check")
+    heads = ("robot", "fits", "passed", "centre at, mm", "turned, deg", "time, s", "laser on, s", "binds most", _ERROR)
     planned = [one for one in outcomes if one.duration is not None and one.error is not None]
     chart = scatter_chart(
         "Time and accuracy",
@@ -74,11 +74,11 @@ def study_of_robots(profiles: Sequence[Profile], producers: Sequence[Produced]) 
 
 def _row(one: Outcome) -> tuple[str, ...]:
     limit = f"{one.binds[0][0]} {100.0 * one.binds[0][1]:.0f} %" if one.binds else _MISSING
-    tight = f"{one.tightest[0]} {100.0 * one.tightest[1]:.1f} %" if one.tightest else _MISSING
+    place = _MISSING if one.at is None else ", ".join(f"{1e3 * value:g}" for value in one.at)
     turned = None if one.rotation is None else math.degrees(one.rotation)
-    numbers = (_number(turned, ".0f"), _number(one.duration, ".3f"), _number(one.laser, ".3f"))
+    numbers = (place, _number(turned, "g"), _number(one.duration, ".3f"), _number(one.laser, ".3f"))
     error = _number(None if one.error is None else 1e6 * one.error, ".1f")
-    return (one.name, _yes(one.fits), _yes(one.passed), *numbers, limit, error, tight)
+    return (one.name, _yes(one.fits), _yes(one.passed), *numbers, limit, error)
 
 
 def _figures(one: Profile) -> tuple[str, ...]:
@@ -115,12 +115,12 @@ def _data(one: Outcome) -> dict[str, Any]:
         "fits": one.fits,
         "passed": one.passed,
         "reason": one.reason,
+        "at_mm": None if one.at is None else [1e3 * value for value in one.at],
         "rotation_deg": None if one.rotation is None else math.degrees(one.rotation),
         "duration_s": one.duration,
         "laser_on_s": one.laser,
         "binds_share": dict(one.binds),
         "tool_error_per_arcmin_um": None if one.error is None else 1e6 * one.error,
-        "tightest_check": None if one.tightest is None else {"name": one.tightest[0], "share": one.tightest[1]},
     }
 
 
