@@ -9,7 +9,7 @@ import io
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,11 +36,9 @@ from deltacam.program.atomic import replace_when_done, write_whole
 from deltacam.program.outputs import Outputs, make_folder
 from deltacam.program.program import DrawingRef, Program
 from deltacam.report import html, listing
-from deltacam.robot.reader import load_robot
+from deltacam.robot.reader import DEFAULT_ROBOT, load_robot
 from deltacam.robot.robot import Robot
 from deltacam.verification import verify as verification
-
-DEFAULT_ROBOT: Final = "delta-300"
 
 Progress = Callable[[str, int, int], None]
 """Is told the stage, how much of it is done, and of how much."""

@@ -17,6 +17,8 @@ from deltacam.robot.robot import Controller, Interpolation, JointLimits, Robot, 
 from deltacam.robot.workspace import DEFAULT_PRESSURE_ANGLE_DEG, Workspace
 from deltacam.settings import REQUIRED, Required, Table, read_table
 
+DEFAULT_ROBOT: Final = "delta-300"
+
 _PROFILES: Final = resources.files("deltacam.robot") / "profiles"
 _LIMITS: Final = ("max_speed", "max_acceleration", "max_jerk")
 
