@@ -10,6 +10,7 @@ from deltacam_cli.main import LateGroup
 
 COMMANDS: Final = {
     "show": "Show what ROBOT can do over its sheet.",
+    "workspace": "Show where ROBOT can work, and the largest cylinder and box that it can use.",
 }
 """The commands and their short help; a command ``x`` is ``deltacam_cli.robot.x:command``."""
 

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from deltacam.errors import RobotError
-from deltacam.model import Array, BoolArray
+from deltacam.model import Array
 from deltacam.robot.dimensions import DeltaGeometry
 from deltacam.robot.region.certify import Certificate, certify
 from deltacam.robot.region.margins import margins
@@ -54,7 +54,7 @@ class _Section:
         ring = np.stack((np.cos(turn), np.sin(turn)), axis=1)
         if self.ratio is None:
             return ring
-        return ring / np.abs(ring).max(axis=1)[:, np.newaxis] * [1.0, self.ratio]
+        return np.asarray(ring / np.abs(ring).max(axis=1)[:, np.newaxis] * [1.0, self.ratio])
 
     def region(self, size: float, low: float, high: float) -> Region:
         """The region of this section from z = ``low`` to ``high``, m."""
@@ -82,7 +82,8 @@ def largest_region(
         height: of the region, m; None for the height that gives the largest volume.
 
     Returns:
-        The region, at most some thousandths smaller than the largest that its points allow, and its certificate.
+        The region and its certificate. Its heights are of a grid, and its size is within a quarter of a percent of the
+        largest that is certified for them with a limited number of cells.
 
     Raises:
         RobotError: there is no such region.
@@ -118,7 +119,7 @@ def _sizes(
         ),
         axis=-1,
     )
-    kept: BoolArray = (margins(geometry, requirements, points.reshape(-1, 3)) >= 0.0).all(axis=1)  # false for nan
+    kept = np.asarray((margins(geometry, requirements, points.reshape(-1, 3)) >= 0.0).all(axis=1))  # false for nan
     whole = kept.reshape(points.shape[:3]).all(axis=2)
     rings = np.logical_and.accumulate(whole, axis=1).sum(axis=1)
     return np.asarray(scale[np.maximum(rings - 1, 0)])
