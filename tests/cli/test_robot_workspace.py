@@ -6,22 +6,32 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from deltacam_cli.main import main
+from deltacam.errors import DeltacamError
+from deltacam_cli.main import cli
 
 
-def test_the_workspace_is_shown_as_text_page_and_json(tmp_path: Path) -> None:
+def run(*arguments: str) -> str:
+    result = CliRunner().invoke(cli, ["robot", "workspace", *arguments], catch_exceptions=False)
+    assert result.exit_code == 0
+    return result.stdout
+
+
+def test_the_workspace_is_shown_as_text_and_as_a_page(tmp_path: Path) -> None:
     page = tmp_path / "workspace.html"
-    result = CliRunner().invoke(main, ["robot", "workspace", "delta-300", "--height", "20", "--html", str(page)])
-    assert result.exit_code == 0, result.output
-    assert "largest cylinder" in result.output
-    assert "20.0 mm high" in result.output
-    assert "Section along x" in page.read_text()
-    result = CliRunner().invoke(main, ["robot", "workspace", "delta-300", "--slices", "1", "--json"])
-    found = json.loads(result.output)
+    shown = run("delta-300", "--height", "20", "--html", str(page))
+    assert shown.count("20.0 mm high") == 2
+    assert f"wrote {page}" in shown
+    assert page.read_text().count('class="chart"') == 3
+
+
+def test_json_has_the_proved_numbers() -> None:
+    found = json.loads(run("delta-300", "--slices", "1", "--json"))
     assert found["sheet"]["verdict"] == found["cylinder"]["verdict"] == found["box"]["verdict"] == "certified"
     assert len(found["slices"]) == 1
     volume = found["volume_m3"]
     assert volume["proved_at_least"] < volume["about"] < volume["proved_at_most"]
+    for shape in ("sheet", "cylinder", "box"):
+        assert all(0.0 <= margin["proved"] <= margin["found"] for margin in found[shape]["margins"].values())
 
 
 @pytest.mark.parametrize(
@@ -35,7 +45,6 @@ def test_the_workspace_is_shown_as_text_page_and_json(tmp_path: Path) -> None:
     ],
 )
 def test_an_impossible_wish_is_refused_with_a_hint(wish: list[str], said: str) -> None:
-    result = CliRunner().invoke(main, ["robot", "workspace", "delta-300", *wish])
-    assert result.exit_code == 2
-    assert said in result.output
-    assert "hint:" in result.output
+    with pytest.raises(DeltacamError, match=said) as refused:
+        run("delta-300", *wish)
+    assert refused.value.hint

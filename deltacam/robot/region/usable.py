@@ -58,14 +58,14 @@ class Usable:
         low: volume of the cells in which every requirement is kept everywhere, m^3: proved, the volume is not smaller.
         high: the volume is not larger, m^3: the rest is proved to break a requirement.
         inside: middles of the cells that are inside, (N, 3) m.
-        volumes: of each of them, (N,) m^3.
+        halves: half of the sides of each of them, (N, 3) m.
         bounds: corners of a box that holds the usable region, (2, 3) m.
     """
 
     low: float
     high: float
     inside: Array
-    volumes: Array
+    halves: Array
     bounds: Array
 
 
@@ -84,20 +84,20 @@ def usable_region(geometry: DeltaGeometry, requirements: Requirements, *, max_ce
         The region; the difference of its two volumes is that of the cells at its edge.
     """
     cells, half = first_cells(whole_reach(geometry), across=10)
-    kept, volumes, looked_at = [], [], 0
+    kept, halves, looked_at = [], [], 0
     while True:
         _, low, high = cell_margins(geometry, requirements, cells, half)
         looked_at += len(cells)
         inside, outside = (low > 0.0).all(axis=1), (high < 0.0).any(axis=1)
         kept.append(cells[inside])
-        volumes.append(np.full(int(inside.sum()), 8.0 * half.prod()))
+        halves.append(np.broadcast_to(half, cells[inside].shape))
         open_cells = cells[~inside & ~outside]
         if not len(open_cells) or looked_at + 8 * len(open_cells) > max_cells:
             break
         cells, half = halved(open_cells, half)
-    all_inside, all_volumes = np.concatenate(kept), np.concatenate(volumes)
-    least = float(all_volumes.sum())
-    both = np.concatenate((all_inside, open_cells))
-    reach = np.append(np.cbrt(all_volumes / half.prod() / 8.0), np.ones(len(open_cells)))[:, np.newaxis] * half
+    middles, sides = np.concatenate(kept), np.concatenate(halves)
+    least, edge = 8.0 * float(sides.prod(axis=1).sum()), 8.0 * float(half.prod()) * len(open_cells)
+    both = np.concatenate((middles, open_cells))
+    reach = np.concatenate((sides, np.broadcast_to(half, open_cells.shape)))
     bounds = np.stack(((both - reach).min(axis=0), (both + reach).max(axis=0))) if len(both) else np.zeros((2, 3))
-    return Usable(least, least + 8.0 * float(half.prod()) * len(open_cells), all_inside, all_volumes, bounds)
+    return Usable(least, least + edge, middles, sides, bounds)

@@ -14,7 +14,7 @@ from deltacam.robot.region.usable import Usable, requirements_of, usable_region,
 from deltacam.robot.robot import Robot
 
 ROBOTS = {name: load_robot(name) for name in profile_names()}
-FEW = 8_000
+FEW = 30_000
 
 
 @pytest.fixture(params=["delta-300", "irb360-1600"], scope="module")
@@ -27,7 +27,7 @@ def usable(robot: Robot) -> Usable:
     return usable_region(robot.geometry, requirements_of(robot), max_cells=FEW)
 
 
-def test_the_proved_volumes_hold_that_of_a_million_random_points(robot: Robot, usable: Usable) -> None:
+def test_the_proved_volumes_hold_that_of_random_points(robot: Robot, usable: Usable) -> None:
     low, high = whole_reach(robot.geometry).bounds
     points = np.random.default_rng(3).uniform(low, high, (200_000, 3))
     kept = (margins(robot.geometry, requirements_of(robot), points) >= 0.0).all(axis=1)
@@ -42,11 +42,10 @@ def test_the_proved_volumes_hold_that_of_a_million_random_points(robot: Robot, u
 
 
 def test_every_pose_of_a_cell_inside_is_usable(robot: Robot, usable: Usable) -> None:
-    half = np.cbrt(usable.volumes)[:, np.newaxis] / 2.0  # the cells are about cubes: within their insides
-    shifts = np.random.default_rng(5).uniform(-0.9, 0.9, (40, len(usable.inside), 3))
-    points = (usable.inside + shifts * half).reshape(-1, 3)
-    assert (margins(robot.geometry, requirements_of(robot), points) >= 0.0).mean() > 0.999
-    assert (margins(robot.geometry, requirements_of(robot), usable.inside) > 0.0).all()
+    shifts = np.clip(np.random.default_rng(5).uniform(-1.5, 1.5, (40, len(usable.inside), 3)), -1.0, 1.0)
+    points = (usable.inside + shifts * usable.halves).reshape(-1, 3)
+    assert len(points) > 1000
+    assert (margins(robot.geometry, requirements_of(robot), points) > 0.0).all()
 
 
 def test_the_arms_reach_nothing_outside_of_the_whole_reach(robot: Robot) -> None:
