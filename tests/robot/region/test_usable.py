@@ -1,10 +1,13 @@
 """The usable region and the largest regions in it, against points without number."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from deltacam.errors import RobotError
 from deltacam.robot import kinematics, measures
+from deltacam.robot.dimensions import Mount
 from deltacam.robot.reader import load_robot, profile_names
 from deltacam.robot.region.largest import largest_region
 from deltacam.robot.region.margins import margins
@@ -101,3 +104,10 @@ def test_a_slice_knows_its_area(robot: Robot, usable: Usable) -> None:
     points = np.column_stack((xy, np.full(len(xy), robot.workspace.sheet_z)))
     kept = (margins(robot.geometry, requirements_of(robot), points) >= 0.0).all(axis=1)
     assert one.area == pytest.approx(float(size.prod() * kept.mean()), rel=0.03)
+
+
+def test_a_robot_that_stands_upside_down_elsewhere_has_the_same_volume() -> None:
+    robot = ROBOTS["delta-300"]
+    moved = replace(robot.geometry, mount=Mount(0.2, -0.1, -1.3, 0.0, upside_down=True))
+    ours, theirs = (usable_region(one, requirements_of(robot), max_cells=FEW) for one in (robot.geometry, moved))
+    assert (theirs.low, theirs.high) == pytest.approx((ours.low, ours.high), rel=1e-6)
