@@ -13,6 +13,7 @@ COMMANDS: Final = {
     "budget": "Show how exactly ROBOT can cut.",
     "show": "Show what ROBOT can do over its sheet.",
     "place": "Find where on the sheet DRAWING is cut fastest and most accurately.",
+    "workspace": "Show where ROBOT can work, and the largest cylinder and box that it can use.",
 }
 """The commands and their short help; a command ``x`` is ``deltacam_cli.robot.x:command``."""
 

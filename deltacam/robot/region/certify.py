@@ -89,10 +89,7 @@ def certify(
     Returns:
         The certificate. It is the same for the same input.
     """
-    low, high = region.bounds
-    counts = _first_counts(high - low)
-    half = (high - low) / counts / 2.0
-    cells = low + half * (1.0 + 2.0 * _grid(counts))
+    cells, half = first_cells(region, across=_ACROSS)
     found = _Found(requirements)
     found.sample(geometry, region.corners())
     proved, looked_at = np.full(len(requirements.names), np.inf), 0
@@ -104,11 +101,9 @@ def certify(
         looked_at += len(cells)
         again = (lows < tightness * np.maximum(found.smallest, 0.0)).any(axis=1) | (lows[:, 0] <= 0.0)
         proved = np.minimum(proved, lows[~again].min(axis=0, initial=np.inf))
-        pieces = _grid(np.where(half > 0.0, 2, 1)) * 2.0 - 1.0
-        if found.broken or not again.any() or looked_at + again.sum() * len(pieces) > max_cells:
+        if found.broken or not again.any() or looked_at + 8 * again.sum() > max_cells:
             break
-        half, cells = half / 2.0, cells[again]
-        cells = (cells[:, np.newaxis] + half * 2.0 * pieces / 2.0).reshape(-1, 3)
+        cells, half = halved(cells[again], half)
     proved = np.minimum(proved, lows[again].min(axis=0, initial=np.inf))
     return Certificate(found.verdict(proved), found.margins(proved), looked_at)
 
@@ -150,12 +145,24 @@ class _Found:
         )
 
 
-def _first_counts(size: Array) -> Array:
-    """How many first cells along each side, so that they are about cubes; (3,)."""
-    longest = float(size.max())
-    if longest == 0.0:
-        return np.ones(3)
-    return np.maximum(np.round(_ACROSS * size / longest), 1.0)
+def first_cells(region: Region, *, across: int) -> tuple[Array, Array]:
+    """Cells that cover a region, about cubes, ``across`` of them along its longest side.
+
+    Returns:
+        Their middles (N, 3) m, and half of the sides of each (3,) m.
+    """
+    low, high = region.bounds
+    longest = float((high - low).max())
+    counts = np.maximum(np.round(across * (high - low) / (longest or 1.0)), 1.0)
+    half = (high - low) / counts / 2.0
+    return low + half * (1.0 + 2.0 * _grid(counts)), half
+
+
+def halved(cells: Array, half: Array) -> tuple[Array, Array]:
+    """Every cell divided in two along each side that has a length: middles (M, 3) m and half sides (3,) m."""
+    pieces = _grid(np.where(half > 0.0, 2, 1)) * 2.0 - 1.0
+    pieces = np.where(half > 0.0, pieces, 0.0) * half / 2.0
+    return (cells[:, np.newaxis] + pieces).reshape(-1, 3), half / 2.0
 
 
 def _grid(counts: Array) -> Array:

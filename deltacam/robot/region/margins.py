@@ -45,13 +45,15 @@ def cell_margins(geometry: DeltaGeometry, requirements: Requirements, centres: A
         half: half of the sides of every cell, (3,) m.
 
     Returns:
-        Three arrays as `margins`. Where a part of a cell is out of reach, or close to it, nothing is known of the
-        others: minus and plus infinity.
+        Three arrays as `margins`. Where a part of a cell is out of reach, or close to it, little is known of the
+        others: they are minus and plus infinity. The largest is that of the poses within reach.
     """
     bounds = pose_bounds(geometry, centres, half)
     at, low, high = _against(requirements, bounds)
     low, high = low - ROUNDING * (1.0 + np.abs(low)), high + ROUNDING * (1.0 + np.abs(high))
-    low[~bounds.steady, 1:], high[~bounds.steady, 1:] = -np.inf, np.inf
+    low[~bounds.steady, 1:] = -np.inf
+    anyhow = [name in (REACH, "mu1", "swing") for name in requirements.names]  # from t and y, which are always bounded
+    high[np.ix_(~bounds.steady, ~np.array(anyhow))] = np.inf
     around = (np.maximum(bounds.angle.high, -bounds.angle.low) > _LARGEST_ANGLE).any(axis=1)
     for name in {"joint_min", "joint_max"}.intersection(requirements.names):
         column = requirements.names.index(name)

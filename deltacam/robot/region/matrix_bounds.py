@@ -27,12 +27,16 @@ class MatrixBounds(NamedTuple):
     """What M is like over N cells.
 
     Attributes:
-        inverse_condition: the smallest, (N,); 0 where nothing is known.
-        column: the largest length of every column of J, (N, 3) m/rad; infinite where nothing is known.
+        low: the smallest inverse condition number, (N,); 0 where nothing is known.
+        high: the largest, (N,); infinite where nothing is known.
+        shortest: the smallest length of every column of J, (N, 3) m/rad; 0 where nothing is known.
+        longest: the largest, (N, 3) m/rad; infinite where nothing is known.
     """
 
-    inverse_condition: Array
-    column: Array
+    low: Array
+    high: Array
+    shortest: Array
+    longest: Array
 
 
 def matrix_bounds(rows: Array, curvatures: Array, third: Array, half: Array) -> MatrixBounds:
@@ -58,12 +62,26 @@ def matrix_bounds(rows: Array, curvatures: Array, third: Array, half: Array) -> 
     part = size * change
     tail = np.where(part < 1.0, size * part**2 / np.maximum(1.0 - part, 1e-9) + size**2 * rest, np.inf)
     turned = inverse[:, np.newaxis] - back
-    largest = _norm(rows[:, np.newaxis] + there).max(axis=1) + rest
-    column = np.sqrt((turned**2).sum(axis=2).max(axis=1)) + tail[:, np.newaxis]
-    return MatrixBounds(1.0 / (largest * (_norm(turned).max(axis=1) + tail)), column)
+    most = _norm(rows[:, np.newaxis] + there).max(axis=1) + rest, _norm(turned).max(axis=1) + tail
+    least = _tangent(rows, there) - rest, _tangent(inverse, -back) - tail
+    lengths = np.sqrt((inverse**2).sum(axis=1))
+    tangents = (turned * (inverse / lengths[:, np.newaxis])[:, np.newaxis]).sum(axis=2).min(axis=1)
+    return MatrixBounds(
+        low=1.0 / (most[0] * most[1]),
+        high=np.divide(1.0, least[0] * least[1], out=np.full(len(rows), np.inf), where=np.minimum(*least) > 0.0),
+        shortest=np.maximum(tangents - tail[:, np.newaxis], 0.0),
+        longest=np.sqrt((turned**2).sum(axis=2).max(axis=1)) + tail[:, np.newaxis],
+    )
 
 
 def _norm(matrices: Array) -> Array:
     """The largest singular value of matrices (..., 3, 3)."""
     square = np.swapaxes(matrices, -1, -2) @ matrices
     return np.asarray(np.sqrt(np.linalg.eigvalsh(square)[..., -1]), dtype=np.float64)
+
+
+def _tangent(matrices: Array, changes: Array) -> Array:
+    """A bound from below of the norms of ``matrices`` (N, 3, 3) with any of their ``changes`` (N, 8, 3, 3): (N,)."""
+    left, values, right = np.linalg.svd(matrices)
+    slopes = np.einsum("ni,ncij,nj->nc", left[:, :, 0], changes, right[:, 0])
+    return np.asarray(values[:, 0] + slopes.min(axis=1), dtype=np.float64)

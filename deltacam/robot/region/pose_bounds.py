@@ -102,10 +102,9 @@ def pose_bounds(geometry: DeltaGeometry, centres: Array, half: Array) -> PoseBou
     if cells.rho > 0.0:
         third = cells.third_derivative(floor, bend)
         sharp = _sharpen(geometry, arms, gradients, third, half, steady & (condition.at > _SINGULAR))
-        most = np.arccos(np.minimum(La * t.low / Lb / sharp.column, 1.0))
-        same_side = (mu2.at < np.pi / 2) & np.isfinite(sharp.column)
-        mu2 = mu2._replace(high=np.where(same_side, np.minimum(mu2.high, most), mu2.high))
-        condition = condition._replace(low=np.maximum(condition.low, sharp.inverse_condition))
+        mu2 = _sharper_mu2(mu2, La * t.low / Lb, La * t.high / Lb, sharp)
+        low, high = np.maximum(condition.low, sharp.low), np.minimum(condition.high, sharp.high)
+        condition = Interval(condition.at, low, high)
     return PoseBounds(
         reach=reach,
         steady=steady,
@@ -158,7 +157,7 @@ class _Cells:
         return Interval(*scaled), self._drive(far * near, low, high, self.span(kx, ky, kz) + drop)
 
     def _drive(self, square: Array, low: Array, high: Array, change: Array) -> Interval:
-        """The drive t from its square, the bounds of hyp - k and hyp + k, and the largest change of k; 0 out of reach."""
+        """The drive t by its square, bounds of hyp - k and hyp + k, and the largest change of k; 0 out of reach."""
         La, rho, x, y, z, k = self.geometry.upper_arms, self.rho, self.x, self.y, self.z, self.k
         slope = self.span(2.0 * (x - k * x / La), -2.0 * k * y / La, 2.0 * (z - k * z / La))
         least = square - slope - change**2 - np.maximum(k, 0.0) * rho**2 / La
@@ -196,9 +195,24 @@ def _sharpen(
     turned = (La * (La - arms.k[which]))[..., np.newaxis, np.newaxis] * (g[..., :, np.newaxis] * g[..., np.newaxis, :])
     drive = (La * arms.t[which])[..., np.newaxis, np.newaxis]
     found = matrix_bounds(g, (np.swapaxes(moved, -1, -2) @ moved - turned) / drive, third[which], half)
-    condition, column = np.zeros(len(which)), np.full(arms.x.shape, np.inf)
-    condition[which], column[which] = found
-    return MatrixBounds(condition, column)
+    count = len(which)
+    unknown = MatrixBounds(np.zeros(count), np.full(count, np.inf), np.zeros((count, 3)), np.full((count, 3), np.inf))
+    for every, known in zip(unknown, found, strict=True):
+        every[which] = known
+    return unknown
+
+
+def _sharper_mu2(mu2: Interval, least: Array, most: Array, sharp: MatrixBounds) -> Interval:
+    """The bounds of mu2 (N, 3), closer where those of J are; 1 / |row_i| is between ``least`` and ``most``, m/rad."""
+    known = (mu2.at < np.pi / 2) & np.isfinite(sharp.longest)  # the sign of det M does not change
+    high = np.arccos(np.minimum(least / sharp.longest, 1.0))
+    cos = np.divide(most, sharp.shortest, out=np.ones_like(most), where=sharp.shortest > most)
+    low = np.arccos(cos)
+    return Interval(
+        mu2.at,
+        np.where(known, np.maximum(mu2.low, low), mu2.low),
+        np.where(known, np.minimum(mu2.high, high), mu2.high),
+    )
 
 
 def _mu2(geometry: DeltaGeometry, forearms: Array, turns: Array) -> Interval:
