@@ -58,11 +58,11 @@ def command(
     from deltacam.robot.importers.complete import Wishes
     from deltacam.robot.importers.description import Choices
     from deltacam.robot.importers.formats import import_robot
-    from deltacam.robot.importers.wishes import to_range, to_sheet
-    from deltacam.units import METRES_PER, metres_per, parse_speed
+    from deltacam.robot.importers.wishes import to_millimetres, to_range, to_sheet
+    from deltacam.units import parse_speed
 
     choices = Choices(
-        millimetres_per_unit=None if units is None else metres_per(units) / METRES_PER["mm"],
+        millimetres_per_unit=None if units is None else to_millimetres(units),
         joints_at=None if joints_at is None else to_places(joints_at),
     )
     wishes = Wishes(

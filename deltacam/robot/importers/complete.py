@@ -29,6 +29,8 @@ _NEEDED: Final = (
 )
 _SLACK: Final = math.radians(1e-3)  # before the needed range is rounded outwards to whole degrees
 
+_ESTIMATE: Final = "an estimate, to be replaced: "
+
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
@@ -96,7 +98,8 @@ def complete(description: Description, wishes: Wishes) -> Imported:
         RobotError: something that neither says, with the option for it; a value out of bounds; or a robot that cannot
             do its sheet.
     """
-    speed, acceleration = wishes.speed or description.tool_speed, wishes.acceleration or description.tool_acceleration
+    speed = description.tool_speed if wishes.speed is None else wishes.speed
+    acceleration = description.tool_acceleration if wishes.acceleration is None else wishes.acceleration
     workspace = _workspace(description, wishes.sheet)
     if workspace is None or speed is None or acceleration is None:
         raise _missing(description, workspace, speed, acceleration)
@@ -112,14 +115,15 @@ def complete(description: Description, wishes: Wishes) -> Imported:
         source=f"imported from {', '.join(description.files)} ({description.program})",
     )
     check_workspace(robot)
+    marked = {key: _ESTIMATE + remark for key, remark in estimates.items()}
     return Imported(
         robot=robot,
-        toml=to_toml(robot, header=_header(estimates), remarks=dict(description.remarks) | estimates),
+        toml=to_toml(robot, header=_header(estimates), remarks=dict(description.remarks) | marked),
         program=description.program,
         facts=description.facts + _given(wishes),
         unused=description.unused,
         estimates=tuple(estimates.items()),
-        notes=description.notes,
+        notes=description.notes + _replaced(description, wishes),
     )
 
 
@@ -212,11 +216,24 @@ def _given(wishes: Wishes) -> tuple[Fact, ...]:
     return tuple(found)
 
 
+def _replaced(description: Description, wishes: Wishes) -> tuple[str, ...]:
+    """Which values of the file an option holds instead of."""
+    both = (
+        ("--sheet", wishes.sheet, description.bed_radius),
+        ("--speed", wishes.speed, description.tool_speed),
+        ("--acceleration", wishes.acceleration, description.tool_acceleration),
+        ("--joints", wishes.joints, description.joint_min or description.joint_max),
+    )
+    return tuple(
+        f"{option} holds instead of what the file says" for option, *two in both if all(one is not None for one in two)
+    )
+
+
 def _printable(name: str) -> str:
     """A file's name as a robot's: one line of at most 200 characters."""
     return "".join(letter for letter in name if letter.isprintable())[:200].strip() or "imported"
 
 
 def _header(estimates: Mapping[str, str]) -> tuple[str, ...]:
-    keys = ", ".join(key.replace(".", "] ", 1) for key in estimates)
-    return (f"Estimates, to be replaced by the numbers of the machine: [{keys}",) if estimates else ()
+    keys = ", ".join("[{}] {}".format(*key.split(".")) for key in estimates)
+    return (f"Estimates, to be replaced by the numbers of the machine: {keys}",) if estimates else ()

@@ -50,19 +50,19 @@ def describe(sources: Sequence[Source], _choices: Choices) -> Description:
     if kind is None or kind.value != "rotary_delta":
         shown = "missing" if kind is None else kind.value[:40]
         raise RobotError(f"[printer] kinematics is {shown}, not rotary_delta", where=sources[0].name)
-    facts: list[Fact] = []
+    facts = [_fact(kind, "a rotary delta")]
     radius, height = (_required(ledger, "printer", key, sources) for key in ("shoulder_radius", "shoulder_height"))
-    upper, lower = (_per_stepper(ledger, f"{key}_length", sources, facts) for key in ("upper_arm", "lower_arm"))
-    angles = _angles(ledger, facts)
+    upper = _per_stepper(ledger, "upper_arm_length", "upper_arm_mm", sources, facts)
+    lower = _per_stepper(ledger, "lower_arm_length", "forearm_mm", sources, facts)
     geometry = DeltaGeometry(
         base_radius=BOUNDS["base_radius"].to_si(to_number(radius)),
         effector_radius=0.0,
         upper_arm=_si("upper_arm", upper),
         forearm=_si("forearm", lower),
-        azimuths=_si("azimuths", angles),
+        azimuths=_si("azimuths", _angles(ledger, facts)),
         mount=Mount(z=BOUNDS["mount_z"].to_si(to_number(height))),
     )
-    facts[:0] = [
+    facts[1:1] = [
         _fact(radius, f"base_radius_mm = {radius.value}, effector_radius_mm = 0"),
         _fact(height, f"[mount] z_mm = {height.value}"),
     ]
@@ -107,13 +107,13 @@ def _required(ledger: Ledger, section: str, key: str, sources: Sequence[Source])
     return found
 
 
-def _per_stepper(ledger: Ledger, key: str, sources: Sequence[Source], facts: list[Fact]) -> tuple[float, ...]:
+def _per_stepper(
+    ledger: Ledger, key: str, ours: str, sources: Sequence[Source], facts: list[Fact]
+) -> tuple[float, ...]:
     """The value of every stepper; b and c have that of a where they give none."""
     first = _required(ledger, "stepper_a", key, sources)
     entries = [ledger.find(stepper, key) or first for stepper in _STEPPERS]
-    ours = {"upper_arm_length": "upper_arm_mm", "lower_arm_length": "forearm_mm"}.get(key)
-    if ours:
-        facts += [_fact(entry, f"{ours}, arm {arm}") for arm, entry in enumerate(entries, start=1)]
+    facts += [_fact(entry, f"{ours}, arm {arm}") for arm, entry in enumerate(entries, start=1)]
     return tuple(to_number(entry) for entry in entries)
 
 
@@ -129,7 +129,9 @@ def _angles(ledger: Ledger, facts: list[Fact]) -> tuple[float, ...]:
 
 def _highest(ledger: Ledger, geometry: DeltaGeometry, sources: Sequence[Source], facts: list[Fact]) -> Triple:
     """The joint angles at the endstops, rad: where the tool on the axis is at ``position_endstop`` above the bed."""
-    heights = _per_stepper(ledger, "position_endstop", sources, facts)
+    first = _required(ledger, "stepper_a", "position_endstop", sources)
+    entries = [ledger.find(stepper, "position_endstop") or first for stepper in _STEPPERS]
+    heights = [to_number(entry) for entry in entries]
     points = np.column_stack((np.zeros((3, 2)), np.array(heights) / 1e3))
     try:
         angles = np.diagonal(kinematics.inverse(geometry, points))
@@ -138,8 +140,8 @@ def _highest(ledger: Ledger, geometry: DeltaGeometry, sources: Sequence[Source],
         raise RobotError(
             what, where=sources[0].name, hint="check the lengths of the arms and position_endstop"
         ) from None
-    for stepper, height, angle in zip(_STEPPERS, heights, np.degrees(angles), strict=True):
-        facts.append(Fact(f"[{stepper}] position_endstop", f"{height:g}", f"min_deg = {angle:.4f}, the endstop"))
+    for entry, angle in zip(entries, np.degrees(angles), strict=True):
+        facts.append(_fact(entry, f"min_deg = {angle:.4f}, the endstop"))
     one, two, three = (float(angle) for angle in angles)
     return one, two, three
 

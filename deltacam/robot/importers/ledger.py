@@ -124,8 +124,8 @@ class Ledger:
             RobotError: it is given twice with different values.
         """
         found = self._named.get((section, key), [])
-        self._used.update(found)
         holding = [entry for entry in found if entry.overrides] or found
+        self._used.update(holding)
         for other in holding[1:]:
             if other.value != holding[0].value:
                 what = f"{other.label} is given twice: {_short(holding[0].value)} and {_short(other.value)}"
@@ -192,24 +192,22 @@ def ini_entries(source: Source, *, fold: bool = False, marks: str = "#;") -> lis
         fold: whether keys are the same in capital and in small letters.
         marks: the characters that start a comment.
     """
-    found: list[Entry] = []
+    found: list[tuple[str, str, list[str], str]] = []
     section = ""
     for number, raw in enumerate(source.lines, start=1):
         line = re.split(rf"(?:^|\s)[{re.escape(marks)}]", raw, maxsplit=1)[0].rstrip()
-        place = f"{source.name}:{number}"
-        head = re.fullmatch(r"\s*\[([^\]]*)\]\s*", line)
+        head = re.fullmatch(r"\s*\[([^\]]*)\]", line)
         if not line.strip():
             continue
         if head:
             section = head[1].strip()
-        elif line[0].isspace() and found and found[-1].section == section:
-            last = found[-1]
-            found[-1] = Entry(section, last.key, f"{last.value} {line.strip()}".strip(), last.place)
+        elif line[0].isspace() and found and found[-1][0] == section:
+            found[-1][2].append(line.strip())
         else:
             key, _, value = re.sub(r"[:=]", "\0", line, count=1).partition("\0")
             key = key.strip().lower() if fold else key.strip()
-            found.append(Entry(section, key, value.strip(), place))
-    return found
+            found.append((section, key, [value.strip()], f"{source.name}:{number}"))
+    return [Entry(section, key, " ".join(lines).strip(), place) for section, key, lines, place in found]
 
 
 def _short(value: str) -> str:

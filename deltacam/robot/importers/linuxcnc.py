@@ -63,7 +63,7 @@ def describe(sources: Sequence[Source], choices: Choices) -> Description:
     scale = _unit(ini, choices, facts, sources[0].name)
     base, effector, upper, fore = (_length(hal, ini, pin, scale, facts) for pin in _LENGTHS)
     limits = {ours: _per_joint(ini, key, ours, facts) for key, ours in _LIMITS.items()}
-    _check_angles(ini)
+    _check_angles(ini, facts)
     rating = {ours: _rating(ini, key, ours, scale, facts) for key, ours in _RATING.items()}
     return Description(
         name=sources[0].name.rpartition(".")[0] or sources[0].name,
@@ -83,7 +83,7 @@ def describe(sources: Sequence[Source], choices: Choices) -> Description:
 
 
 def _is_ini(source: Source) -> bool:
-    return re.search(r"^\s*\[[^\]\n]*\]\s*$", source.text, flags=re.MULTILINE) is not None
+    return re.search(r"^[ \t]*\[[^\]\n]*\][ \t]*$", source.text, flags=re.MULTILINE) is not None
 
 
 def _hal_entries(source: Source) -> list[Entry]:
@@ -135,12 +135,17 @@ def _length(hal: Ledger, ini: Ledger, pin: str, scale: float, facts: list[Fact])
     if signal is not None:
         what = f"{_PREFIX}{pin} is driven by the signal {signal.value[:40]}, whose value no file says"
         raise RobotError(what, where=signal.place, hint=f"write `setp {_PREFIX}{pin} VALUE` in a copy of the file")
+    key = BOUNDS[ours].key
     entry = hal.find("setp", _PREFIX + pin)
-    number = default if entry is None else to_number(_substituted(entry, ini))
-    source = f"default of LinuxCNC for {_PREFIX}{pin}" if entry is None else f"{entry.place} {_PREFIX}{pin}"
-    shown = f"{default:g}" if entry is None else entry.value
-    facts.append(Fact(source, shown, f"{BOUNDS[ours].key} = {number * scale:g}"))
-    return BOUNDS[ours].to_si(number * scale)
+    if entry is None:
+        facts.append(Fact(f"default of LinuxCNC for {_PREFIX}{pin}", f"{default:g}", f"{key} = {default * scale:g}"))
+        return BOUNDS[ours].to_si(default * scale)
+    value = _substituted(entry, ini)
+    number = to_number(value) * scale
+    facts.append(Fact(f"{entry.place} {_PREFIX}{pin}", entry.value, f"{key} = {number:g}"))
+    if value is not entry:
+        facts.append(Fact(f"{value.place} {entry.value}", value.value, key))
+    return BOUNDS[ours].to_si(number)
 
 
 def _substituted(entry: Entry, ini: Ledger) -> Entry:
@@ -180,7 +185,7 @@ def _per_joint(ini: Ledger, key: str, ours: str, facts: list[Fact]) -> Triple | 
     return one, two, three
 
 
-def _check_angles(ini: Ledger) -> None:
+def _check_angles(ini: Ledger, facts: list[Fact]) -> None:
     """Refuse joints that are not in degrees.
 
     Raises:
@@ -189,6 +194,7 @@ def _check_angles(ini: Ledger) -> None:
     entry = ini.find("TRAJ", "ANGULAR_UNITS")
     if entry is not None:
         one_of(entry, _DEGREES, "unit of angle that rotarydeltakins has")
+        facts.append(Fact(f"{entry.place} {entry.label}", entry.value, "angles are in degrees"))
 
 
 def _rating(ini: Ledger, key: str, ours: str, scale: float, facts: list[Fact]) -> float | None:
@@ -205,10 +211,10 @@ def _rating(ini: Ledger, key: str, ours: str, scale: float, facts: list[Fact]) -
 
 def _elsewhere(sources: Sequence[Source]) -> tuple[str, ...]:
     """What the files refer to."""
-    pattern = r"^\s*(?:#INCLUDE|source|HALFILE\s*=|POSTGUI_HALFILE\s*=)[ \t]*(\S.*?)\s*$"
+    pattern = r"^[ \t]*(?:#INCLUDE|source|HALFILE[ \t]*=|POSTGUI_HALFILE[ \t]*=)(.*)"
     return tuple(
-        f"{source.name} names {name[:60]}, which was not read; name it beside the file if it matters"
+        f"{source.name} names {name.strip()[:60]}, which was not read; name it beside the file if it matters"
         for source in sources
         for name in re.findall(pattern, source.text, flags=re.MULTILINE)
-        if not any(name.endswith(other.name) for other in sources)
+        if not any(name.strip().endswith(other.name) for other in sources)
     )

@@ -22,6 +22,7 @@ from deltacam.robot.importers.ledger import Entry, Ledger, Source, numbers
 NAME: Final = "reprapfirmware"
 TITLE: Final = "RepRapFirmware"
 USES: Final[tuple[str, ...]] = ()
+_LONGEST: Final = 1000  # characters of a line; the firmware takes less
 _ROTARY_DELTA: Final = 10.0
 _AZIMUTHS: Final = (-150.0, -30.0, 90.0)
 _DEFAULTS: Final = {
@@ -55,7 +56,7 @@ _DIFFERENCE: Final = (
 
 def is_like(source: Source) -> bool:
     """Whether the file names this kind of machine."""
-    return re.search(r"^\s*M669\b[^;\n]*\bK10\b", source.text, flags=re.MULTILINE | re.IGNORECASE) is not None
+    return re.search(r"^[ \t]*M669\b[^;\n]*\bK10\b", source.text, flags=re.MULTILINE | re.IGNORECASE) is not None
 
 
 def describe(sources: Sequence[Source], _choices: Choices) -> Description:
@@ -66,8 +67,8 @@ def describe(sources: Sequence[Source], _choices: Choices) -> Description:
     """
     entries = [entry for source in sources for entry in _entries(source)]
     ledger = Ledger(entries)
-    _check_kind(ledger, entries, sources[0].name)
     facts: list[Fact] = []
+    _check_kind(ledger, entries, sources[0].name, facts)
     values = {letter: _values(ledger, letter, facts) for letter in _DEFAULTS}
     if len(set(values["H"])) > 1:
         what = f"the bearings are at different heights, H{':'.join(f'{h:g}' for h in values['H'])}"
@@ -112,7 +113,10 @@ def _entries(source: Source) -> list[Entry]:
     found = []
     for number, raw in enumerate(source.lines, start=1):
         place = f"{source.name}:{number}"
-        line = re.sub(r"\([^)]*\)", " ", re.sub(r'"[^"]*"', lambda text: text[0].replace(";", ","), raw).split(";")[0])
+        if len(raw) > _LONGEST:
+            raise RobotError(f"a line of {len(raw)} characters is no command", where=place)
+        quoted = re.sub(r'"[^"]*"', lambda text: text[0].replace(";", "\0").replace("(", "\1"), raw)
+        line = re.sub(r"\([^)]*\)", " ", quoted.split(";")[0])
         command = re.match(r"\s*([GMT]\d+(?:\.\d+)?)", line, flags=re.IGNORECASE | re.ASCII)
         if command is None:
             found += [Entry("", line.strip(), "", place)] if line.strip() else []
@@ -120,11 +124,12 @@ def _entries(source: Source) -> list[Entry]:
         rest = line[command.end() :]
         words = re.findall(r'([A-Za-z])\s*("[^"]*"|\{[^}]*\}|[^\sA-Za-z"{]*(?:[eE][-+]?\d+)?)', rest)
         name = command[1].upper()
-        found += [Entry(name, letter.upper(), value, place) for letter, value in words] or [Entry(name, "", "", place)]
+        values = [(letter.upper(), value.replace("\0", ";").replace("\1", "(")) for letter, value in words]
+        found += [Entry(name, *pair, place) for pair in values] or [Entry(name, "", "", place)]
     return found
 
 
-def _check_kind(ledger: Ledger, entries: Sequence[Entry], file: str) -> None:
+def _check_kind(ledger: Ledger, entries: Sequence[Entry], file: str, facts: list[Fact]) -> None:
     """Refuse another kinematics, and lengths in inches.
 
     Raises:
@@ -134,6 +139,7 @@ def _check_kind(ledger: Ledger, entries: Sequence[Entry], file: str) -> None:
     if kind is None or numbers(kind, [kind.value]) != (_ROTARY_DELTA,):
         shown = "missing" if kind is None else f"K{kind.value[:40]}"
         raise RobotError(f"the kinematics of M669 is {shown}, not K10 (rotary delta)", where=file)
+    facts.append(Fact(f"{kind.place} M669 K", kind.value, "a rotary delta"))
     for entry in entries:
         if entry.section == "G20":
             raise RobotError(

@@ -6,7 +6,7 @@ import re
 
 from deltacam.errors import RobotError
 from deltacam.robot.importers.complete import Sheet
-from deltacam.units import parse_angle, parse_length
+from deltacam.units import metres_per, parse_angle, parse_length
 
 
 def to_sheet(text: str) -> Sheet:
@@ -37,3 +37,12 @@ def to_range(text: str) -> tuple[float, float]:
     if not dots:
         raise RobotError(f"{text[:40]!r} is not a range of angles", hint="write it like --joints=-45..95")
     return parse_angle(low), parse_angle(high)
+
+
+def to_millimetres(unit: str) -> float:
+    """How many millimetres one ``unit`` is.
+
+    Raises:
+        DeltacamError: the unit is not known.
+    """
+    return round(metres_per(unit) * 1e3, 9)
