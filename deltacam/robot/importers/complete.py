@@ -24,9 +24,7 @@ from deltacam.robot.robot import JointLimits, Robot, ToolRating
 from deltacam.robot.workspace import Workspace
 from deltacam.robot.writer import to_toml
 
-_NEEDED: Final = (
-    "an estimate, to be replaced: the file gives no such limit; this is what the sheet needs, rounded outwards"
-)
+_NEEDED: Final = "the file gives no such limit; this is what the sheet needs, rounded outwards"
 _SLACK: Final = math.radians(1e-3)  # before the needed range is rounded outwards to whole degrees
 
 _ESTIMATE: Final = "an estimate, to be replaced: "
