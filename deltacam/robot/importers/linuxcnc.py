@@ -60,8 +60,9 @@ def describe(sources: Sequence[Source], choices: Choices) -> Description:
     ini = Ledger(entry for source in inis for entry in ini_entries(source))
     hal = Ledger(entry for source in sources if source not in inis for entry in _hal_entries(source))
     facts: list[Fact] = []
+    elsewhere = _elsewhere(sources)
     scale = _unit(ini, choices, facts, sources[0].name)
-    base, effector, upper, fore = (_length(hal, ini, pin, scale, facts) for pin in _LENGTHS)
+    base, effector, upper, fore = (_length(hal, ini, pin, scale, facts, unread=elsewhere) for pin in _LENGTHS)
     limits = {ours: _per_joint(ini, key, ours, facts) for key, ours in _LIMITS.items()}
     _check_angles(ini, facts)
     rating = {ours: _rating(ini, key, ours, scale, facts) for key, ours in _RATING.items()}
@@ -78,7 +79,7 @@ def describe(sources: Sequence[Source], choices: Choices) -> Description:
         tool_acceleration=rating["tool_max_acceleration"],
         facts=tuple(facts),
         unused=ini.unused() + hal.unused(),
-        notes=_elsewhere(sources),
+        notes=tuple(f"{name}, which was not read; name it beside the file if it matters" for name in elsewhere),
     )
 
 
@@ -124,11 +125,11 @@ def _unit(ini: Ledger, choices: Choices, facts: list[Fact], file: str) -> float:
     return scale
 
 
-def _length(hal: Ledger, ini: Ledger, pin: str, scale: float, facts: list[Fact]) -> float:
+def _length(hal: Ledger, ini: Ledger, pin: str, scale: float, facts: list[Fact], *, unread: Sequence[str]) -> float:
     """A dimension in SI.
 
     Raises:
-        RobotError: the pin is driven by a signal, or its value is not known.
+        RobotError: the pin is driven by a signal, its value is not known, or a file that was not read may set it.
     """
     ours, default = _LENGTHS[pin]
     signal = hal.find("net", _PREFIX + pin)
@@ -137,6 +138,9 @@ def _length(hal: Ledger, ini: Ledger, pin: str, scale: float, facts: list[Fact])
         raise RobotError(what, where=signal.place, hint=f"write `setp {_PREFIX}{pin} VALUE` in a copy of the file")
     key = BOUNDS[ours].key
     entry = hal.find("setp", _PREFIX + pin)
+    if entry is None and unread:
+        what = f"no file that was read sets {_PREFIX}{pin}, but {unread[0]}, which was not read"
+        raise RobotError(what, hint="name the HAL files beside the INI file: deltacam robot import a.ini a.hal")
     if entry is None:
         facts.append(Fact(f"default of LinuxCNC for {_PREFIX}{pin}", f"{default:g}", f"{key} = {default * scale:g}"))
         return BOUNDS[ours].to_si(default * scale)
@@ -210,10 +214,10 @@ def _rating(ini: Ledger, key: str, ours: str, scale: float, facts: list[Fact]) -
 
 
 def _elsewhere(sources: Sequence[Source]) -> tuple[str, ...]:
-    """What the files refer to."""
+    """The files that the files name and that were not read."""
     pattern = r"^[ \t]*(?:#INCLUDE|source|HALFILE[ \t]*=|POSTGUI_HALFILE[ \t]*=)(.*)"
     return tuple(
-        f"{source.name} names {name.strip()[:60]}, which was not read; name it beside the file if it matters"
+        f"{source.name} names {name.strip()[:60]}"
         for source in sources
         for name in re.findall(pattern, source.text, flags=re.MULTILINE)
         if not any(name.strip().endswith(other.name) for other in sources)

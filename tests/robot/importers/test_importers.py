@@ -310,6 +310,14 @@ def test_what_a_file_refers_to_is_not_read_and_said() -> None:
     assert not any("machine.hal, which" in note for note in notes.notes)
 
 
+def test_dimensions_that_an_unread_file_may_set_are_not_taken_from_the_defaults() -> None:
+    with pytest.raises(
+        RobotError, match=r"sets rotarydeltakins.platformradius, but machine.ini names machine.hal"
+    ) as caught:
+        describe([Source("machine.ini", TEXTS["machine.ini"])], None, Choices())
+    assert "name the HAL files" in caught.value.hint
+
+
 def test_the_block_that_klipper_saves_holds_over_the_rest_of_its_file() -> None:
     assert described("klipper").geometry.mount.z == 0.4125
     assert described("klipper", ("#*# shoulder_height = 412.5", "#*#")).geometry.mount.z == 0.4129
