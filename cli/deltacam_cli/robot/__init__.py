@@ -12,6 +12,7 @@ COMMANDS: Final = {
     "compare": "Compare robots, side by side for DRAWING.",
     "budget": "Show how exactly ROBOT can cut.",
     "show": "Show what ROBOT can do over its sheet.",
+    "import": "Make a robot file from the FILE of another program.",
     "place": "Find where on the sheet DRAWING is cut fastest and most accurately.",
     "workspace": "Show where ROBOT can work, and the largest cylinder and box that it can use.",
 }

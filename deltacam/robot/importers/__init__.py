@@ -1,0 +1,1 @@
+"""Robot descriptions of other programs, read as robots."""
