@@ -52,7 +52,9 @@ def heat_map(
         "hovertemplate": f"{axes[0]} %{{x:.1f}} mm<br>{axes[1]} %{{y:.1f}} mm<br>%{{z:.4g}} {unit}<extra></extra>",
         "colorbar": {"title": {"text": unit}, "outlinewidth": 0, "thickness": 14},
     }
-    places = np.array([[x_mm.min(), y_mm.min()], [x_mm.max(), y_mm.max()]])
+    corners = np.array([[x_mm.min(), y_mm.min()], [x_mm.max(), y_mm.max()]])
+    seen = np.vstack([corners, *outlines])
+    places = np.stack([seen.min(axis=0), seen.max(axis=0)])
     drawn = [lines([outline], palette.LINE, width=1.6) | {"hoverinfo": "skip"} for outline in outlines]
     return Chart(heading, caption, (field, *drawn, *_marks(marks)), _of_map(places, axes))
 
