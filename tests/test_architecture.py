@@ -25,6 +25,7 @@ MAY_IMPORT = {
     "report": {"errors", "plain", "units", "model", "geometry", "robot", "program", "verification"},
     "inspection": {"errors", "plain", "units", "model", "geometry"},
     "examine": {"errors", "model", "robot", "drawing", "cutting", "program", "verification"},
+    "compare": {"errors", "model", "robot", "drawing", "cutting", "pipeline"},
     "pipeline": {
         "errors",
         "units",

@@ -82,7 +82,7 @@ def tool_error_per_joint_error(geometry: DeltaGeometry, points: npt.ArrayLike) -
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
 
     Returns:
         (N,) m/rad; inf where the forearms do not hold the effector.
@@ -99,7 +99,7 @@ def tool_error_per_joint_error_in_plane(geometry: DeltaGeometry, points: npt.Arr
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
 
     Returns:
         (N,) m/rad; inf where the forearms do not hold the effector.

@@ -70,6 +70,12 @@ def test_the_condition_number_of_the_built_in_robots_is_as_published_in_their_fi
     worst = {robot.name: 1.0 / robot.inverse_condition(robot.workspace.grid()).min() for robot in ROBOTS}
     assert worst["delta-300"] == pytest.approx(2.37, abs=0.01)
     assert worst["irb360-1600"] == pytest.approx(2.81, abs=0.01)
+    assert worst["irb360-1130"] == pytest.approx(2.79, abs=0.01)
+    assert worst["delta-x-s-d600"] == pytest.approx(2.79, abs=0.01)
+    assert worst["dr3ib-8l"] == pytest.approx(2.78, abs=0.01)
+    assert worst["rl5-1450"] == pytest.approx(2.74, abs=0.01)
+    assert worst["tutorial-112"] == pytest.approx(1.40, abs=0.01)
+    assert len(worst) == 7
 
 
 def test_pressure_angles_are_90_degrees_at_the_singularities() -> None:

@@ -9,6 +9,7 @@ import click
 from deltacam_cli.main import LateGroup
 
 COMMANDS: Final = {
+    "compare": "Compare robots, side by side for DRAWING.",
     "budget": "Show how exactly ROBOT can cut.",
     "show": "Show what ROBOT can do over its sheet.",
 }
