@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deltacam.errors import DeltacamError
-from deltacam.units import METRES_PER, likely_units, metres_per, parse_jerk, parse_length, parse_speed
+from deltacam.units import METRES_PER, likely_units, metres_per, parse_fine_angle, parse_jerk, parse_length, parse_speed
 
 
 @pytest.mark.parametrize(
@@ -102,3 +102,18 @@ def test_no_unit_is_proposed_that_makes_the_part_absurd(width: float, height: fl
     assert len(set(found)) == len(found)
     for unit in found:
         assert 1e-3 <= max(width, height) * METRES_PER[unit] <= 10.0
+
+
+@pytest.mark.parametrize(
+    ("text", "turns"),
+    [("0.36", 1e-3), ("21.6 arcmin", 1e-3), ("1296arcsec", 1e-3), ("0.36deg", 1e-3), ("16bit", 2.0**-16)],
+)
+def test_a_small_angle_is_read_in_the_unit_that_it_states(text: str, turns: float) -> None:
+    assert parse_fine_angle(text) == pytest.approx(math.tau * turns, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["", "arcmin", "nan", "1 mm", "16.5bit", "0bit", "1000bit", "-3bit"])
+def test_what_is_no_small_angle_is_refused_with_an_example(text: str) -> None:
+    with pytest.raises(DeltacamError) as caught:
+        parse_fine_angle(text)
+    assert caught.value.hint

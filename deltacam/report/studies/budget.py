@@ -30,8 +30,8 @@ _NAMES: Final = {
 _VIEWS: Final = {"in_plane": "x and y", "focus": "height above the sheet", "in_space": "both"}
 _NOTES: Final = (
     "every error is uniform within its limits, and each arm has its own; what no option gave is assumed, not measured",
-    "rms is the root mean square of the distance; of the machines that were drawn, 95 % are within the next figure at "
-    + "each place; at the bound every error is at the worse of its limits",
+    "rms is the root mean square of the distance; 95 %: of the machines that were drawn, at each place",
+    "at the bound every error is at the worse of its limits",
     "joints alone: encoder and backlash, which is what remains when a calibration has found all lengths",
     "x and y are of the place in the machine: a part keeps its size where all of it is shifted alike",
     "the head of a delta does not tilt: an error of the height of the sheet changes the focus, and x and y by nothing",

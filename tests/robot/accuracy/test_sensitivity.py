@@ -125,7 +125,7 @@ def test_a_joint_error_of_one_arcmin_is_as_large_at_the_tool_as_published(
 ) -> None:
     """The reading that fits: joints of -50 to 90 degrees, and the disc at the height where it is widest.
 
-    Within 70 % of its radius the figure is 1.1 to 1.6 % more than published, within 69 % it is that to the digit: the
+    Within 70 % of its radius the figure is 1.0 to 1.5 % more than published, within 69 % it is that to the digit: the
     raster of those who computed it ended a little inside.
     """
     turn = np.linspace(0.0, 2.0 * np.pi, 61)
