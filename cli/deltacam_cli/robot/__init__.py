@@ -9,12 +9,12 @@ import click
 from deltacam_cli.main import LateGroup
 
 COMMANDS: Final = {
-    "compare": "Compare robots, side by side for DRAWING.",
-    "budget": "Show how exactly ROBOT can cut.",
     "show": "Show what ROBOT can do over its sheet.",
-    "import": "Make a robot file from the FILE of another program.",
-    "place": "Find where on the sheet DRAWING is cut fastest and most accurately.",
     "workspace": "Show where ROBOT can work, and the largest cylinder and box that it can use.",
+    "place": "Find where on the sheet DRAWING is cut fastest and most accurately.",
+    "budget": "Show how exactly ROBOT can cut.",
+    "compare": "Compare robots, side by side for DRAWING.",
+    "import": "Make a robot file from the FILE of another program.",
 }
 """The commands and their short help; a command ``x`` is ``deltacam_cli.robot.x:command``."""
 
@@ -23,5 +23,6 @@ COMMANDS: Final = {
 def command() -> None:
     """Study a robot: what it can do, where, and how exactly.
 
-    A robot is a built-in name or a robot file (.toml). Every command takes --json, and --html for a page with pictures.
+    A robot is a built-in name or a robot file (.toml). Every command takes --json, and most --html for a page with
+    pictures.
     """
