@@ -21,7 +21,7 @@ def test_the_workspace_is_shown_as_text_and_as_a_page(tmp_path: Path) -> None:
     shown = run("delta-300", "--height", "20", "--html", str(page))
     assert shown.count("20.0 mm high") == 2
     assert f"wrote {page}" in shown
-    assert page.read_text().count('class="chart"') == 3
+    assert page.read_text().count('class="chart"') == 6
 
 
 def test_json_has_the_proved_numbers() -> None:

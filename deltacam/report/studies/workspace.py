@@ -138,7 +138,7 @@ def _slice_table(slices: tuple[Slice, ...]) -> Table:
         poses, kept = one.poses, one.poses.kept
         z = f"{1e3 * poses.points[0, 2]:.1f}"
         if not kept.any():
-            rows.append((z, "0", *["-"] * 7))
+            rows.append((z, "0", *["-"] * 8))
             continue
         condition = poses.inverse_condition[kept]
         rows.append(
@@ -149,6 +149,7 @@ def _slice_table(slices: tuple[Slice, ...]) -> Table:
                 f"{condition.mean():.3f}",
                 *(f"{math.degrees(values[kept].max()):.1f}" for values in (poses.mu1, poses.mu2, poses.swing)),
                 f"{math.degrees(poses.angles[kept].min()):.1f} to {math.degrees(poses.angles[kept].max()):.1f}",
+                f"{1e3 * poses.manipulability[kept].min():.3g}",
                 f"{1e6 * math.radians(1.0 / 60.0) * poses.tool_error[kept].max():.0f}",
             )
         )
@@ -161,6 +162,7 @@ def _slice_table(slices: tuple[Slice, ...]) -> Table:
         "mu2, deg",
         "swing, deg",
         "joints, deg",
+        "|det J|, l/rad3",
         "um/arcmin",
     )
     return Table("Slices of the usable region", heads, tuple(rows))
@@ -168,19 +170,46 @@ def _slice_table(slices: tuple[Slice, ...]) -> Table:
 
 def _charts(found: WorkspaceStudy) -> tuple[Chart, ...]:
     sections = ((found.sections[0], "Section along x"), (found.sections[1], "Section along y"))
-    upright = tuple(_map(one, heading, _uprights(found, one.axes[0])) for one, heading in sections)
-    level = _map(found.level, "At the height of the sheet", (_sheet_outline(found.robot.workspace),))
-    return *upright, level
+    caption = "1/cond where every requirement is kept; the lines are the sheet and the largest certified cylinder."
+    upright = [
+        _map(one, heading, caption, one.poses.inverse_condition, "1/cond", _uprights(found, one.axes[0]))
+        for one, heading in sections
+    ]
+    level, edge = found.level, (_sheet_outline(found.robot.workspace),)
+    poses = level.poses
+    pressure, swing = np.degrees(np.maximum(poses.mu1, poses.mu2)), np.degrees(poses.swing)
+    kept = "Where every requirement is kept; the line is the sheet."
+    return (
+        *upright,
+        _map(level, "1/cond at the height of the sheet", kept, poses.inverse_condition, "1/cond", edge),
+        _map(
+            level,
+            "Pressure angle at the height of the sheet",
+            f"The larger of mu1 and mu2. {kept}",
+            pressure,
+            "deg",
+            edge,
+        ),
+        _map(level, "Forearm swing at the height of the sheet", kept, swing, "deg", edge),
+        _map(
+            level,
+            "Manipulability at the height of the sheet",
+            f"|det J|. {kept}",
+            1e3 * poses.manipulability,
+            "l/rad3",
+            edge,
+        ),
+    )
 
 
-def _map(one: Slice, heading: str, outlines: tuple[Array, ...]) -> Chart:
+def _map(one: Slice, heading: str, caption: str, values: Array, unit: str, outlines: tuple[Array, ...]) -> Chart:
     return heat_map(
         heading,
-        "1/cond where every requirement is kept; the lines are the sheet and the largest certified cylinder.",
+        caption,
         x_mm=1e3 * one.first,
         y_mm=1e3 * one.second,
-        values=one.field(one.poses.inverse_condition),
-        unit="1/cond",
+        values=one.field(values),
+        unit=unit,
         outlines=outlines,
         axes=(_AXES[one.axes[0]], _AXES[one.axes[1]]),
     )

@@ -19,12 +19,11 @@ PER_SIDE: Final = 48
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Poses:
-    """Poses at points; nan where a point is out of reach, but for ``kept`` and ``limit``.
+    """Poses at points; nan where a point is out of reach, but for ``kept``.
 
     Attributes:
         points: (N, 3) m.
         kept: whether all requirements are kept, (N,).
-        limit: the column in `Requirements.names` of the smallest margin, (N,).
         inverse_condition: (N,), 0 to 1.
         mu1: of the worst arm, (N,) rad.
         mu2: of the worst arm, (N,) rad.
@@ -38,7 +37,6 @@ class Poses:
 
     points: Array
     kept: BoolArray
-    limit: Array
     inverse_condition: Array
     mu1: Array
     mu2: Array
@@ -66,7 +64,6 @@ def poses_at(geometry: DeltaGeometry, requirements: Requirements, points: Array)
     return Poses(
         points=points,
         kept=reached & (np.nan_to_num(found, nan=-1.0) >= 0.0).all(axis=1),
-        limit=np.where(reached, np.nan_to_num(found, nan=np.inf).argmin(axis=1), 0),
         inverse_condition=known(bounds.inverse_condition.at),
         mu1=known(np.arccos(bounds.along.at).max(axis=1)),
         mu2=known(bounds.mu2.at.max(axis=1)),
