@@ -9,7 +9,7 @@ import io
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,11 +36,9 @@ from deltacam.program.atomic import replace_when_done, write_whole
 from deltacam.program.outputs import Outputs, make_folder
 from deltacam.program.program import DrawingRef, Program
 from deltacam.report import html, listing
-from deltacam.robot.reader import load_robot
+from deltacam.robot.reader import DEFAULT_ROBOT, load_robot
 from deltacam.robot.robot import Robot
 from deltacam.verification import verify as verification
-
-DEFAULT_ROBOT: Final = "delta-300"
 
 Progress = Callable[[str, int, int], None]
 """Is told the stage, how much of it is done, and of how much."""
@@ -91,7 +89,7 @@ def plan(
         unit: what the drawing's numbers are, where the file does not say or is wrong: "mm", "in", ...
         default_unit: what they are where neither the file nor ``unit`` says.
         selection: which layers count, and how far apart ends may be; the rules are those of the process.
-        at: where the centre of what is cut comes to lie, base frame, m.
+        at: where the centre of what is cut comes to lie, machine frame, m.
         rotation: of the drawing about that centre, rad, counter-clockwise.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
         jobs: how many processes plan the motion, >= 1; None takes as many as pay. The program is the same for any.

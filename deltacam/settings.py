@@ -139,6 +139,13 @@ class Table:
             raise self.problem(f"{key} is empty")
         return value
 
+    def flag(self, key: str, *, default: bool | Required = REQUIRED) -> bool:
+        """Whether ``key`` is true."""
+        value = self._get(key, default, "true or false")
+        if not isinstance(value, bool):
+            raise self.problem(f"{key} = {_show(value)} is not true or false", hint=f"write {key} = true, or false")
+        return value
+
     def choice(self, key: str, options: Sequence[str], *, default: str | Required = REQUIRED) -> str:
         """The text ``key``, one of ``options``."""
         allowed = " or ".join(f'"{option}"' for option in options)

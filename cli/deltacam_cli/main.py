@@ -5,8 +5,10 @@ from __future__ import annotations
 import difflib
 import importlib
 import json
+import keyword
 import sys
 import traceback
+from collections.abc import Mapping
 from typing import Any, Final, NoReturn
 
 import click
@@ -18,6 +20,7 @@ COMMANDS: Final = {
     "plan": "Plan DRAWING and verify the program.",
     "verify": "Verify PROGRAM, trusting nothing the planner said.",
     "export": "Write PROGRAM in another format.",
+    "robot": "Study a robot: what it can do, where, and how exactly.",
 }
 """The commands and their short help. A command ``x`` is ``deltacam_cli.x:command``; it is imported when it is used."""
 
@@ -34,35 +37,44 @@ LONGEST_MESSAGE: Final = 4000
 class LateGroup(click.Group):
     """A group whose commands are imported when they are used, so that ``--help`` is instant."""
 
+    def __init__(self, *args: Any, table: Mapping[str, str], package: str, **options: Any) -> None:
+        """Take the short help of every command from ``table``; a command ``x`` is in the module ``x`` of a package."""
+        super().__init__(*args, **options)
+        self._table = table
+        self._package = package
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names of the commands."""
-        return list(COMMANDS)
+        return list(self._table)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """The command of that name, imported."""
-        if name not in COMMANDS:
+        if name not in self._table:
             return None
-        command: click.Command = importlib.import_module(f"deltacam_cli.{name}").command
+        module = f"{name}_" if keyword.iskeyword(name) else name
+        command: click.Command = importlib.import_module(f"{self._package}.{module}").command
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         with formatter.section("Commands"):
-            formatter.write_dl(list(COMMANDS.items()))
+            formatter.write_dl(list(self._table.items()))
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The command that the first argument names; a drawing in its place is answered with what to type."""
-        if args and args[0].lower().endswith(".dxf"):
+        if args and args[0].lower().endswith(".dxf") and "plan" in self._table:
             ctx.fail(f"no command given; did you mean `deltacam plan {args[0]}`?")
-        if args and args[0] not in COMMANDS:
-            near = difflib.get_close_matches(args[0], COMMANDS, n=1)
+        if args and args[0] not in self._table:
+            near = difflib.get_close_matches(args[0], self._table, n=1)
             ctx.fail(f"no such command {args[0]!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
         return super().resolve_command(ctx, args)
 
 
-@click.group(cls=LateGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=LateGroup, table=COMMANDS, package="deltacam_cli", context_settings={"help_option_names": ["-h", "--help"]}
+)
 @click.version_option(package_name="deltacam", prog_name="deltacam")
 @click.option("--traceback", is_flag=True, help="On a fault of deltacam itself, show where it happened.")
 def cli(traceback: bool) -> None:
@@ -73,6 +85,7 @@ def cli(traceback: bool) -> None:
     deltacam plan part.dxf                  writes part.program.csv and its reports
     deltacam verify part.program.csv        checks it again, independently
     deltacam export part.program.csv --to gcode
+    deltacam robot show delta-300           shows what a robot can do
 
     Exit codes: 0 done and every check passed; 1 a check failed; 2 the command line, robot, process or drawing must be
     changed; 3 a fault of deltacam; 130 interrupted.

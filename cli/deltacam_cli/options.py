@@ -122,6 +122,17 @@ def load(read: Callable[[str], T], given: str | None, own: str | None, built_in:
         raise DeltacamError(problem.what, where=problem.where or where, hint=problem.hint) from problem
 
 
+def robot(name: str | None, own: Defaults) -> Robot:
+    """The robot that the command line names, else the user's own, else the built-in one.
+
+    Raises:
+        DeltacamError: it cannot be read.
+    """
+    from deltacam.robot.reader import DEFAULT_ROBOT, load_robot
+
+    return load(load_robot, name, own.robot, DEFAULT_ROBOT, f"{own.file}: robot")
+
+
 def length(option: str, text: str | None) -> float | None:
     """The length in metres; a bare number is millimetres.
 

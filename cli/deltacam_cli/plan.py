@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from deltacam.model import Process
     from deltacam.pipeline import Planned
     from deltacam.program.outputs import Outputs
-    from deltacam.robot.robot import Robot
 
 JOBS = click.IntRange(0, 64)
 
@@ -96,7 +95,7 @@ def _settings(
     """What the command line and the user's own defaults say, as the pipeline takes it."""
     selection = options.selection(own, layers=layers, ignored_layers=ignored_layers, join=join, accept_loss=accept_loss)
     return {
-        "robot": options.with_jerk(_robot(robot, own), jerk),
+        "robot": options.with_jerk(options.robot(robot, own), jerk),
         "process": _process(process, own, **single_values),
         "unit": options.unit("--units", units),
         "default_unit": own.units,
@@ -106,13 +105,6 @@ def _settings(
         "jobs": jobs or None,
         "what_if": what_if,
     }
-
-
-def _robot(name: str | None, own: Defaults) -> Robot:
-    from deltacam.pipeline import DEFAULT_ROBOT
-    from deltacam.robot.reader import load_robot
-
-    return options.load(load_robot, name, own.robot, DEFAULT_ROBOT, f"{own.file}: robot")
 
 
 def _process(

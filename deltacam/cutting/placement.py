@@ -33,7 +33,7 @@ def place(contours: Sequence[Contour], *, robot: Robot, at: tuple[float, float],
     Args:
         contours: what is cut or engraved, sheet frame, m.
         robot: gives the height of the sheet.
-        at: base frame, m.
+        at: machine frame, m.
         rotation: rad, counter-clockwise.
     """
     centre = bounding_box(contours).mean(axis=0)
@@ -81,7 +81,7 @@ def refuse_outside(
 
 
 def _placed(cuts: Sequence[Cut], placement: Placement) -> tuple[Array, IntArray]:
-    """Points (N, 2) m along the cuts, base frame, and the index of the cut that each is on, (N,)."""
+    """Points (N, 2) m along the cuts, machine frame, and the index of the cut that each is on, (N,)."""
     points, owner = rings.flatten(Pack.of(cut.curve for cut in cuts), _FLATTENING)
     cos, sin = np.cos(placement.rotation), np.sin(placement.rotation)
     return points @ np.array([[cos, sin], [-sin, cos]]) + (placement.x, placement.y), owner
@@ -91,7 +91,7 @@ def _fitting_unit(points: Array, robot: Robot, drawn: Array, metres_per_unit: fl
     """What to do about a part that is too large for the sheet and would not be in another unit; else empty.
 
     Args:
-        points: of all cuts, (N, 2) m, base frame.
+        points: of all cuts, (N, 2) m, machine frame.
         robot: gives the sheet.
         drawn: the part's width and height in the drawing's own numbers.
         metres_per_unit: that were used.

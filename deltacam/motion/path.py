@@ -14,7 +14,7 @@ from deltacam.model import Array, Curve, IntArray, readonly
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
-    """Lines, arcs and clothoids in the base frame's sheet plane.
+    """Lines, arcs and clothoids in the machine frame's sheet plane.
 
     Attributes:
         start: (M, 2) m, where each segment starts.
@@ -61,7 +61,7 @@ class Path:
             distance: (N,) m, within the segment; both ends belong to it, so that each side of a joint can be asked for.
 
         Returns:
-            p (N, 3) m, p' (N, 3), p'' (N, 3) 1/m, p''' (N, 3) 1/m^2 in the base frame.
+            p (N, 3) m, p' (N, 3), p'' (N, 3) 1/m, p''' (N, 3) 1/m^2 in the machine frame.
         """
         curvature, sharpness = self.curvature[segment], self.sharpness[segment]
         points, heading = clothoid.advance(self.start[segment], self.heading[segment], curvature, sharpness, distance)

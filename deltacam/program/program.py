@@ -74,7 +74,7 @@ class Program:
 
     Attributes:
         robot: the machine that it is for.
-        placement: where the sheet frame lies in the base frame.
+        placement: where the sheet frame lies in the machine frame.
         process: how the material is cut.
         drawing: what it was planned from.
         mode: what it is for.

@@ -16,7 +16,9 @@ from typing import Final
 _SCRIPTS: Final = ("series.js", "overlay.js", "pictures.js", "charts.js", "page.js")
 
 
-def frame(*, title: str, style: str, body: str, data: str, library: str | None) -> str:
+def frame(
+    *, title: str, style: str, body: str, data: str, library: str | None, scripts: tuple[str, ...] = _SCRIPTS
+) -> str:
     """The whole page.
 
     Args:
@@ -25,8 +27,10 @@ def frame(*, title: str, style: str, body: str, data: str, library: str | None) 
         body: HTML.
         data: JSON for the script, in which nothing opens or closes an element.
         library: where a copy of `plotly_js` lies, relative to the page; None puts it into the page.
+        scripts: ours, by the names of their files.
     """
-    inside = (_script(),) if library else (plotly_js(), _script())
+    own = _script(scripts)
+    inside = (own,) if library else (plotly_js(), own)
     elements = "\n".join(f"<script>{script}</script>" for script in inside)
     if library:
         elements = f'<script src="{escape(library)}"></script>\n{elements}'
@@ -57,9 +61,9 @@ def plotly_js() -> str:
 
 
 @cache
-def _script() -> str:
-    """Our script, in a scope of its own."""
-    parts = "\n".join(map(_resource, _SCRIPTS))
+def _script(names: tuple[str, ...]) -> str:
+    """Our scripts as one, in a scope of its own."""
+    parts = "\n".join(map(_resource, names))
     return f'"use strict";\n(() => {{\n{parts}}})();\n'
 
 

@@ -197,7 +197,7 @@ def _scale(points: Array) -> float:
 
 
 def sheet_edge(sheet: Workspace) -> Array:
-    """The edge of the sheet in the base frame, (K, 2) m."""
+    """The edge of the sheet in the machine frame, (K, 2) m."""
     if sheet.radius is not None:
         turn = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
         return sheet.radius * np.column_stack((np.cos(turn), np.sin(turn)))

@@ -19,11 +19,12 @@ from deltacam.verification.evidence import Evidence
 
 _GRID: Final = 41  # places per side at which the pressure angle is known
 _LEVELS: Final = 9  # of pressure angle, about
+_FLAT: Final = 1e-3  # of a triangle: with arms so close to one line the joints themselves stand for it
 _COARSE: Final = 4.0  # times coarser than the picture of the part
 
 
 def workspace_figure(evidence: Evidence, drawing: Drawing | None, view: View) -> Json:
-    """What is around the part, in mm in the base frame.
+    """What is around the part, in mm in the machine frame.
 
     Returns:
         ``traces`` and ``layout``; ``arms``: what the script needs to draw the arms; ``placement`` of the sheet frame.
@@ -32,8 +33,12 @@ def workspace_figure(evidence: Evidence, drawing: Drawing | None, view: View) ->
     part = [_to_base(evidence, line) for line in _outlines(drawing, view)]
     sheet = sheet_edge(robot.workspace)
     geometry = robot.geometry
-    towards = np.stack([np.cos(geometry.azimuths), np.sin(geometry.azimuths)], axis=1)
-    corners = -2.0 * geometry.base_radius * towards
+    middle, outwards = geometry.centre[:2], geometry.outwards
+    joints, elbows = (
+        middle + reach[:, np.newaxis] * outwards
+        for reach in (geometry.base_radii, geometry.base_radii + geometry.upper_arms)
+    )
+    corners = _corners(joints - middle) + middle
     traces = [
         lines([_mm(_closed(corners))], palette.SHEET, width=1.0, fill=palette.PART, opacity=0.55),
         *_pressure(robot, sheet),
@@ -44,22 +49,32 @@ def workspace_figure(evidence: Evidence, drawing: Drawing | None, view: View) ->
     if len(subject):
         traces.append(lines([_mm(_box(subject))], palette.JOINTS[0], width=1.0, dash="3px,3px"))
     traces += [
-        dots(_mm(geometry.base_radius * towards), palette.STRONG, size=9, symbol="square"),
+        dots(_mm(joints), palette.STRONG, size=9, symbol="square"),
         dots(_mm(np.array([robot.workspace.park])), palette.LIMIT, size=9, symbol="cross-thin-open"),
     ]
-    elbows = (geometry.base_radius + geometry.upper_arm) * towards
     seen = np.concatenate([sheet, corners, subject, elbows])
     return {
         "traces": traces,
         "layout": map_layout(_mm(np.stack([seen.min(axis=0), seen.max(axis=0)]))),
         "arms": {
-            "azimuths": list(geometry.azimuths),
-            "base": to_mm(geometry.base_radius),
-            "upper": to_mm(geometry.upper_arm),
-            "effector": to_mm(geometry.effector_radius),
+            "centre": _mm(middle).tolist(),
+            "azimuths": np.arctan2(outwards[:, 1], outwards[:, 0]).tolist(),
+            "base": _mm(geometry.base_radii).tolist(),
+            "upper": _mm(geometry.upper_arms).tolist(),
+            "effector": _mm(geometry.effector_radii).tolist(),
         },
         "placement": {"x": to_mm(placement.x), "y": to_mm(placement.y), "rotation": placement.rotation},
     }
+
+
+def _corners(joints: Array) -> Array:
+    """The triangle whose sides touch the joints' axes, (3, 2) m; the joints lie about the origin."""
+    sides, far = np.roll(joints, 1, axis=0), np.sum(joints**2, axis=1)
+    if not np.all(np.abs(np.linalg.det(np.stack([joints, sides], axis=1))) > _FLAT * far.max()):
+        return joints
+    return np.linalg.solve(
+        np.stack([joints, sides], axis=1), np.stack([far, np.roll(far, 1)], axis=1)[:, :, np.newaxis]
+    )[:, :, 0]
 
 
 def _pressure(robot: Robot, sheet: Array) -> list[Json]:

@@ -9,6 +9,10 @@ forearm, and b_i = dC_i/dq_i. With
 
 the loop closure |S_i| = Lb reads x cos q - z sin q = k, and S_i.b_i = La t, S_i.db_i/dq_i = La (La - k). The elbow
 points outwards where t > 0; t = 0 is the edge of reach (Clavel 1991; Williams 2015, "The delta parallel robot").
+R, r, La and Lb may differ from arm to arm: they are arrays (3,), and every formula holds for each arm by itself.
+
+Points and vectors come in the machine frame. The base may stand turned, moved or upside down in it
+(`dimensions.Mount`); u_i, w_i and z are then its directions there, and this module is where they are taken.
 """
 
 from __future__ import annotations
@@ -25,7 +29,7 @@ from deltacam.robot.dimensions import DeltaGeometry
 ROUNDING: Final = 1e-12  # of a squared length: below it a negative number under a root is rounding, not geometry
 SINGULAR: Final = 1e-6  # of the forearm: below it t is taken as zero
 _LARGEST: Final = 1e12  # of any coordinate, angle or derivative, in SI: its fourth power is still finite
-_LOWEST_BASE: Final = -1e-6  # m; the tool is below it
+_LOWEST_BASE: Final = -1e-6  # m; the tool is below it, in the base's own frame
 
 
 class Arms(NamedTuple):
@@ -44,7 +48,8 @@ def solve(geometry: DeltaGeometry, points: npt.ArrayLike) -> Arms:
     """The inverse kinematics without the arc tangent: cosine and sine of every joint angle, and what they come from.
 
     Raises:
-        RobotError: a point is not finite, not below the base, or out of reach; says which, which arm, and by how much.
+        RobotError: a point is not finite, on the wrong side of the base, or out of reach; says which, which arm, and by
+            how much.
         ValueError: the shape is not (N, 3).
     """
     array = rows(points, "points")
@@ -66,7 +71,7 @@ def solve_drivable(geometry: DeltaGeometry, points: npt.ArrayLike) -> Arms:
         ValueError: the shape is not (N, 3).
     """
     arms = solve(geometry, points)
-    stretched = arms.t <= SINGULAR * geometry.forearm
+    stretched = arms.t <= SINGULAR * geometry.forearms
     if stretched.any():
         worst, arm = divmod(int(np.argmin(arms.t)), 3)
         count = stretched.any(axis=1).sum()
@@ -76,10 +81,23 @@ def solve_drivable(geometry: DeltaGeometry, points: npt.ArrayLike) -> Arms:
 
 
 def forearm_vectors(geometry: DeltaGeometry, arms: Arms) -> Array:
-    """S_i in the base frame: (N, 3, 3), ``[n, i]`` is the vector from elbow i to the effector."""
-    cos, sin = np.cos(geometry.azimuths), np.sin(geometry.azimuths)
-    sx, sz = arms.x - geometry.upper_arm * arms.cos, arms.z + geometry.upper_arm * arms.sin
-    return np.stack((sx * cos - arms.y * sin, sx * sin + arms.y * cos, sz), axis=-1)
+    """S_i in the machine frame: (N, 3, 3), ``[n, i]`` is the vector from elbow i to the effector."""
+    along, down = arms.x - geometry.upper_arms * arms.cos, arms.z + geometry.upper_arms * arms.sin
+    return machine_vectors(geometry, along, arms.y, down)
+
+
+def machine_vectors(geometry: DeltaGeometry, along: Array, across: Array | float, upwards: Array) -> Array:
+    """Vectors in the machine frame: (N, 3, 3), ``[n, i]`` has the components of arm i.
+
+    Args:
+        geometry: the robot.
+        along: u_i, (N, 3).
+        across: w_i, (N, 3).
+        upwards: the base's z, (N, 3).
+    """
+    u, w = geometry.outwards, geometry.sideways
+    x, y = along * u[:, 0] + across * w[:, 0], along * u[:, 1] + across * w[:, 1]
+    return np.stack((x, y, geometry.up * upwards), axis=-1)
 
 
 def rows(values: npt.ArrayLike, name: str) -> Array:
@@ -100,21 +118,22 @@ def rows(values: npt.ArrayLike, name: str) -> Array:
 
 
 def components(geometry: DeltaGeometry, vectors: Array) -> tuple[Array, Array, Array]:
-    """Vectors (N, 3) along u_i, w_i and z of the arms: (N, 3), (N, 3), (N, 1)."""
-    cos, sin = np.cos(geometry.azimuths), np.sin(geometry.azimuths)
+    """Vectors (N, 3) of the machine along u_i, w_i and the base's z: (N, 3), (N, 3), (N, 1)."""
+    u, w = geometry.outwards, geometry.sideways
     vx, vy = vectors[:, :1], vectors[:, 1:2]
-    return vx * cos + vy * sin, vy * cos - vx * sin, vectors[:, 2:]
+    # Term by term: a product of matrices may round otherwise for another number of rows, and a program must not.
+    return vx * u[:, 0] + vy * u[:, 1], vx * w[:, 0] + vy * w[:, 1], geometry.up * vectors[:, 2:]
 
 
 def seen_from_arms(geometry: DeltaGeometry, points: Array) -> tuple[Array, Array, Array]:
     """Where the effector's joints are, from the base joints of the arms: x, y, z of the module's notation."""
-    x, y, z = components(geometry, points)
-    return x - geometry.offset, y, z
+    x, y, z = components(geometry, points - geometry.centre)
+    return x - geometry.offsets, y, z
 
 
 def loop_constant(geometry: DeltaGeometry, x: Array, y: Array, z: Array) -> Array:
     """The constant k of the loop closure, (N, 3) m."""
-    La, Lb = geometry.upper_arm, geometry.forearm
+    La, Lb = geometry.upper_arms, geometry.forearms
     k: Array = (x**2 + y**2 + z**2 + (La**2 - Lb**2)) / (2.0 * La)
     return k
 
@@ -122,15 +141,16 @@ def loop_constant(geometry: DeltaGeometry, x: Array, y: Array, z: Array) -> Arra
 def _out_of_reach(geometry: DeltaGeometry, points: Array) -> RobotError:
     """The error that names the worst point, its arm, and the distance that is missing."""
     x, y, z = seen_from_arms(geometry, points)
-    above = points[:, 2] > _LOWEST_BASE
+    above = z[:, 0] > _LOWEST_BASE
     if above.any():
-        worst = int(np.argmax(points[:, 2]))
-        what = f"{above.sum()} of {len(points)} points are not below the base"
-        return RobotError(f"{what}; the highest is {_millimetres(points[worst])}", where=f"point {worst}")
-    bar = np.sqrt(np.maximum(geometry.forearm**2 - y**2, 0.0))  # the forearm seen in the plane of the arm
+        worst = int(np.argmax(z))
+        side, most = ("above", "lowest") if geometry.mount.upside_down else ("below", "highest")
+        what = f"{above.sum()} of {len(points)} points are not {side} the base; the {most} is"
+        return RobotError(f"{what} {_millimetres(points[worst])}", where=f"point {worst}")
+    bar = np.sqrt(np.maximum(geometry.forearms**2 - y**2, 0.0))  # the forearm seen in the plane of the arm
     distance = np.hypot(x, z)
-    too_far = np.maximum(distance - (geometry.upper_arm + bar), np.abs(y) - geometry.forearm)
-    too_near = np.abs(geometry.upper_arm - bar) - distance
+    too_far = np.maximum(distance - (geometry.upper_arms + bar), np.abs(y) - geometry.forearms)
+    too_near = np.abs(geometry.upper_arms - bar) - distance
     missing = np.maximum(too_far, too_near)
     worst, arm = divmod(int(np.argmax(missing)), 3)
     far = "too far" if too_far[worst, arm] >= too_near[worst, arm] else "too near"

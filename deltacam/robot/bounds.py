@@ -65,6 +65,10 @@ BOUNDS: Final[dict[str, Bound]] = {
     "base_side": Bound("base_side_mm", 0.0, 34_641.0, _radius_from_side_mm, "m"),
     "effector_side": Bound("effector_side_mm", 0.0, 34_641.0, _radius_from_side_mm, "m"),
     "azimuths": Bound("azimuths_deg", -360.0, 360.0, math.radians, "rad"),
+    "mount_x": Bound("x_mm", -20_000.0, 20_000.0, _from_mm, "m"),
+    "mount_y": Bound("y_mm", -20_000.0, 20_000.0, _from_mm, "m"),
+    "mount_z": Bound("z_mm", -20_000.0, 20_000.0, _from_mm, "m"),
+    "mount_rotation": Bound("rotation_deg", -360.0, 360.0, math.radians, "rad"),
     "min": Bound("min_deg", -180.0, 180.0, math.radians, "rad"),
     "max": Bound("max_deg", -180.0, 180.0, math.radians, "rad"),
     "max_speed": Bound("max_speed_deg_s", 1e-3, 1e6, math.radians, "rad/s"),
@@ -72,7 +76,7 @@ BOUNDS: Final[dict[str, Bound]] = {
     "max_jerk": Bound("max_jerk_deg_s3", 1e-3, 1e12, math.radians, "rad/s^3"),
     "tool_max_speed": Bound("max_speed_m_min", 1e-3, 1_000.0, _from_per_minute, "m/s"),
     "tool_max_acceleration": Bound("max_acceleration_m_s2", 1e-3, 10_000.0, float, "m/s^2"),
-    "sheet_z": Bound("sheet_z_mm", -20_000.0, -1.0, _from_mm, "m"),
+    "sheet_z": Bound("sheet_z_mm", -40_000.0, 40_000.0, _from_mm, "m"),
     "width": Bound("width_mm", 1.0, 20_000.0, _from_mm, "m"),
     "depth": Bound("depth_mm", 1.0, 20_000.0, _from_mm, "m"),
     "radius": Bound("radius_mm", 1.0, 10_000.0, _from_mm, "m"),
@@ -81,4 +85,4 @@ BOUNDS: Final[dict[str, Bound]] = {
     "max_forearm_swing": Bound("max_forearm_swing_deg", 1.0, 90.0, math.radians, "rad"),
     "rate_hz": Bound("rate_hz", 1.0, 100_000.0, float, "Hz"),
 }
-"""The range of every number of a robot, by the name of its field; the tool's fields start with ``tool_``."""
+"""The range of every number of a robot, by the name of its field; ``tool_`` and ``mount_`` start those of these two."""

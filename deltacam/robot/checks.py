@@ -21,8 +21,9 @@ def check_reach(geometry: DeltaGeometry, workspace: Workspace) -> None:
     """Refuse a sheet of which a part is out of reach, or at the very edge of it.
 
     Raises:
-        RobotError: the worst point, which arm, and by how much.
+        RobotError: the sheet is on the wrong side of the base; or the worst point, which arm, and by how much.
     """
+    _refuse_wrong_side(geometry, workspace)
     _, nearest = workspace.worst(lambda points: -kinematics.reach_margin(geometry, points).min(axis=1))
     for points in (nearest[np.newaxis], workspace.grid()):
         try:
@@ -30,6 +31,15 @@ def check_reach(geometry: DeltaGeometry, workspace: Workspace) -> None:
         except RobotError as problem:
             what = f"the robot does not reach its whole sheet: {problem.what}"
             raise RobotError(what, where="workspace", hint=_HINT) from problem
+
+
+def _refuse_wrong_side(geometry: DeltaGeometry, workspace: Workspace) -> None:
+    mount = geometry.mount
+    if geometry.up * (workspace.sheet_z - mount.z) >= 0.0:
+        side = "above" if mount.upside_down else "below"
+        hint = "the base hangs above the sheet, or stands below it with upside_down = true in [mount]"
+        what = f"sheet_z_mm = {1e3 * workspace.sheet_z:g} is not {side} the base, which is at {1e3 * mount.z:g} mm"
+        raise RobotError(what, where="workspace", hint=hint)
 
 
 def check_workspace(robot: Robot) -> None:

@@ -16,6 +16,7 @@ from deltacam.robot.arms import (
     components,
     forearm_vectors,
     loop_constant,
+    machine_vectors,
     rows,
     seen_from_arms,
     solve,
@@ -29,13 +30,14 @@ def inverse(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m, z < 0.
+        points: (N, 3) in the machine frame, m, on the tool's side of the base.
 
     Returns:
         (N, 3) rad, in -pi to pi.
 
     Raises:
-        RobotError: a point is not finite, not below the base, or out of reach; says which, which arm, and by how much.
+        RobotError: a point is not finite, on the wrong side of the base, or out of reach; says which, which arm, and by
+            how much.
         ValueError: the shape is not (N, 3).
     """
     arms = solve(geometry, points)
@@ -54,7 +56,7 @@ def forward(geometry: DeltaGeometry, angles: npt.ArrayLike) -> Array:
         angles: (N, 3) rad.
 
     Returns:
-        (N, 3) in the base frame, m, z < 0.
+        (N, 3) in the machine frame, m, on the tool's side of the base.
 
     Raises:
         RobotError: an angle is not finite, or the forearms do not meet below the base with the elbows outwards.
@@ -62,13 +64,14 @@ def forward(geometry: DeltaGeometry, angles: npt.ArrayLike) -> Array:
     """
     q = rows(angles, "joint angles")
     cos, sin = np.cos(q), np.sin(q)
-    elbows = _elbows(geometry, cos, sin)
-    points, meets = _lower_meeting_point(elbows, geometry.forearm)
+    La, still = geometry.upper_arms, geometry.offsets
+    elbows = geometry.centre + machine_vectors(geometry, still + La * cos, 0.0, -La * sin)
+    points, meets = _meeting_point(elbows, geometry.forearms, down=-geometry.up)
     x, _, z = seen_from_arms(geometry, points)
     t = -(x * sin + z * cos)
     _refuse_angles(meets, q, "the forearms do not meet in one point")
-    _refuse_angles(points[:, 2] < 0.0, q, "the forearms meet above the base")
-    _refuse_angles(t.min(axis=1) >= -SINGULAR * geometry.forearm, q, "an elbow is folded inwards")
+    _refuse_angles(z[:, 0] < 0.0, q, f"the forearms meet {'below' if geometry.mount.upside_down else 'above'} the base")
+    _refuse_angles((t / geometry.forearms).min(axis=1) >= -SINGULAR, q, "an elbow is folded inwards")
     return points
 
 
@@ -77,7 +80,7 @@ def inverse_jacobian(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
 
     Returns:
         (N, 3, 3) rad/m; ``[n, i]`` is the row of joint i.
@@ -87,7 +90,7 @@ def inverse_jacobian(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
         ValueError: the shape is not (N, 3).
     """
     arms = solve_drivable(geometry, points)
-    return forearm_vectors(geometry, arms) / (geometry.upper_arm * arms.t)[:, :, np.newaxis]
+    return forearm_vectors(geometry, arms) / (geometry.upper_arms * arms.t)[:, :, np.newaxis]
 
 
 def joint_curvatures(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
@@ -97,7 +100,7 @@ def joint_curvatures(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
 
     Returns:
         (N, 3, 3, 3) rad/m^2; ``[n, i]`` is the symmetric matrix of joint i.
@@ -107,10 +110,9 @@ def joint_curvatures(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
         ValueError: the shape is not (N, 3).
     """
     arms = solve_drivable(geometry, points)
-    La, drive = geometry.upper_arm, geometry.upper_arm * arms.t
+    La, drive = geometry.upper_arms, geometry.upper_arms * arms.t
     g = forearm_vectors(geometry, arms) / drive[:, :, np.newaxis]
-    cos, sin = np.cos(geometry.azimuths), np.sin(geometry.azimuths)
-    b = -La * np.stack((arms.sin * cos, arms.sin * sin, arms.cos), axis=-1)
+    b = machine_vectors(geometry, -La * arms.sin, 0.0, -La * arms.cos)
     moved = np.eye(3) - b[..., :, np.newaxis] * g[..., np.newaxis, :]
     turned = (La * (La - arms.k))[..., np.newaxis, np.newaxis] * (g[..., :, np.newaxis] * g[..., np.newaxis, :])
     return np.asarray((np.swapaxes(moved, -1, -2) @ moved - turned) / drive[..., np.newaxis, np.newaxis])
@@ -141,7 +143,7 @@ def path_derivatives(
     first, second = rows(dp, "first derivatives"), rows(ddp, "second derivatives")
     if not len(first) == len(second) == len(arms.t):
         raise ValueError(f"{len(arms.t)} points, {len(first)} first and {len(second)} second derivatives")
-    La = geometry.upper_arm
+    La = geometry.upper_arms
     drive = La * arms.t
     sx, sz = arms.x - La * arms.cos, arms.z + La * arms.sin
     dx, dy, dz = components(geometry, first)
@@ -178,7 +180,7 @@ def third_derivative(
     arms, third = solve_drivable(geometry, p), rows(dddp, "third derivatives")
     if len(third) != len(dq):
         raise ValueError(f"{len(dq)} points, {len(third)} third derivatives")
-    La = geometry.upper_arm
+    La = geometry.upper_arms
     drive = La * arms.t
     bx, bz, cx, cz = -La * arms.sin, -La * arms.cos, -La * arms.cos, La * arms.sin  # b and db/dq along u and z
     sx, sz = arms.x + cx, arms.z + cz
@@ -195,7 +197,7 @@ def reach_margin(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m; they may be out of reach.
+        points: (N, 3) in the machine frame, m; they may be out of reach.
 
     Returns:
         (N, 3), no unit; a small margin is close to the distance from the edge as a part of the upper arm.
@@ -205,7 +207,7 @@ def reach_margin(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
         ValueError: the shape is not (N, 3).
     """
     x, y, z = seen_from_arms(geometry, rows(points, "points"))
-    return (np.hypot(x, z) - np.abs(loop_constant(geometry, x, y, z))) / geometry.upper_arm
+    return (np.hypot(x, z) - np.abs(loop_constant(geometry, x, y, z))) / geometry.upper_arms
 
 
 def forearm_directions(geometry: DeltaGeometry, points: npt.ArrayLike) -> tuple[Array, Array]:
@@ -213,7 +215,7 @@ def forearm_directions(geometry: DeltaGeometry, points: npt.ArrayLike) -> tuple[
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
 
     Returns:
         (N, 3, 3), ``[n, i]`` is the direction of forearm i; (N, 3).
@@ -223,21 +225,27 @@ def forearm_directions(geometry: DeltaGeometry, points: npt.ArrayLike) -> tuple[
         ValueError: the shape is not (N, 3).
     """
     arms = solve(geometry, points)
-    return forearm_vectors(geometry, arms) / geometry.forearm, arms.t / geometry.forearm
+    return forearm_vectors(geometry, arms) / geometry.forearms[:, np.newaxis], arms.t / geometry.forearms
 
 
-def _lower_meeting_point(centres: Array, radius: float) -> tuple[Array, BoolArray]:
-    """The lower point at ``radius`` from three ``centres`` (N, 3, 3), and whether there is one: (N, 3), (N,)."""
+def _meeting_point(centres: Array, radii: Array, *, down: float) -> tuple[Array, BoolArray]:
+    """The point at ``radii`` (3,) from three ``centres`` (N, 3, 3), and whether there is one: (N, 3), (N,).
+
+    Of the two, the one on the side of z that ``down``, 1 or -1, points to. With the first centre as origin, the point p
+    has 2 a.p = |a|^2 + r1^2 - r2^2 and 2 b.p = |b|^2 + r1^2 - r3^2, and the rest of it is along the normal a x b.
+    """
     a, b = centres[:, 1] - centres[:, 0], centres[:, 2] - centres[:, 0]
     normal = np.cross(a, b)
     area = np.einsum("ij,ij->i", normal, normal)
-    plane = (area > (ROUNDING * radius**2) ** 2) & (normal[:, 2] ** 2 > ROUNDING * area)
+    largest = radii.max()
+    plane = (area > (ROUNDING * largest**2) ** 2) & (normal[:, 2] ** 2 > ROUNDING * area)
     area = np.where(plane, area, 1.0)
-    weighted = np.einsum("ij,ij->i", a, a)[:, np.newaxis] * b - np.einsum("ij,ij->i", b, b)[:, np.newaxis] * a
-    to_centre = np.cross(weighted, normal) / (2.0 * area)[:, np.newaxis]
-    square = radius**2 - np.einsum("ij,ij->i", to_centre, to_centre)
-    down = -np.sign(normal[:, 2]) * np.sqrt(np.maximum(square, 0.0) / area)
-    return centres[:, 0] + to_centre + down[:, np.newaxis] * normal, plane & (square >= -ROUNDING * radius**2)
+    to_a = np.einsum("ij,ij->i", a, a) + (radii[0] ** 2 - radii[1] ** 2)
+    to_b = np.einsum("ij,ij->i", b, b) + (radii[0] ** 2 - radii[2] ** 2)
+    in_plane = np.cross(to_a[:, np.newaxis] * b - to_b[:, np.newaxis] * a, normal) / (2.0 * area)[:, np.newaxis]
+    square = radii[0] ** 2 - np.einsum("ij,ij->i", in_plane, in_plane)
+    along = down * np.sign(normal[:, 2]) * np.sqrt(np.maximum(square, 0.0) / area)
+    return centres[:, 0] + in_plane + along[:, np.newaxis] * normal, plane & (square >= -ROUNDING * largest**2)
 
 
 def _refuse_angles(good: BoolArray, angles: Array, why: str) -> None:
@@ -246,11 +254,3 @@ def _refuse_angles(good: BoolArray, angles: Array, why: str) -> None:
         degrees = ", ".join(f"{angle:.4f}" for angle in np.degrees(angles[first]))
         what = f"{len(good) - good.sum()} of {len(good)} poses are impossible: {why}"
         raise RobotError(f"{what} at ({degrees}) degrees", where=f"pose {first}")
-
-
-def _elbows(geometry: DeltaGeometry, cos: Array, sin: Array) -> Array:
-    """The elbows, moved inwards by the effector's radius: (N, 3, 3), ``[n, i]`` is C_i."""
-    out = geometry.offset + geometry.upper_arm * cos
-    return np.stack(
-        (out * np.cos(geometry.azimuths), out * np.sin(geometry.azimuths), -geometry.upper_arm * sin), axis=-1
-    )

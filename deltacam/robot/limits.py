@@ -23,7 +23,7 @@ def joint_speed_demand(geometry: DeltaGeometry, points: Array, *, speed: float) 
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
         speed: of the tool, m/s.
 
     Returns:
@@ -43,7 +43,7 @@ def joint_acceleration_demand(geometry: DeltaGeometry, points: Array, *, speed: 
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
         speed: of the tool, m/s.
         acceleration: of the tool, m/s^2.
 
@@ -53,11 +53,27 @@ def joint_acceleration_demand(geometry: DeltaGeometry, points: Array, *, speed: 
     Raises:
         RobotError: a point is out of reach.
     """
+    turning = joint_turning(geometry, points) * speed**2
+    return joint_speed_demand(geometry, points, speed=acceleration) + turning
+
+
+def joint_turning(geometry: DeltaGeometry, points: Array) -> Array:
+    """The largest joint acceleration of a tool that moves straight on at 1 m/s, in any direction of the sheet's plane.
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the machine frame, m.
+
+    Returns:
+        (N, 3) rad/m^2, to be multiplied by the square of the tool's speed.
+
+    Raises:
+        RobotError: a point is out of reach.
+    """
     H = joint_curvatures(geometry, points)
     mean = (H[:, :, 0, 0] + H[:, :, 1, 1]) / 2.0
     spread = np.hypot((H[:, :, 0, 0] - H[:, :, 1, 1]) / 2.0, H[:, :, 0, 1])
-    turning: Array = (np.abs(mean) + spread) * speed**2
-    return joint_speed_demand(geometry, points, speed=acceleration) + turning
+    return np.asarray(np.abs(mean) + spread)
 
 
 def derive_max_speed(geometry: DeltaGeometry, workspace: Workspace, *, speed: float) -> float:

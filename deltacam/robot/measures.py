@@ -19,7 +19,7 @@ def pressure_angles(geometry: DeltaGeometry, points: npt.ArrayLike) -> tuple[Arr
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
 
     Returns:
         mu1 (N, 3) and mu2 (N, 3), rad, in 0 to pi/2.
@@ -41,7 +41,7 @@ def forearm_swing(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
 
     Returns:
         (N, 3) rad, in 0 to pi/2.
@@ -51,8 +51,8 @@ def forearm_swing(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
         ValueError: the shape is not (N, 3).
     """
     forearms, _ = forearm_directions(geometry, points)
-    cos, sin = np.cos(geometry.azimuths), np.sin(geometry.azimuths)
-    aside = np.abs(forearms[:, :, 1] * cos - forearms[:, :, 0] * sin)
+    w = geometry.sideways
+    aside = np.abs(forearms[:, :, 0] * w[:, 0] + forearms[:, :, 1] * w[:, 1])
     return np.arcsin(np.minimum(aside, 1.0))
 
 
@@ -61,7 +61,7 @@ def inverse_condition(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
 
     Args:
         geometry: the robot.
-        points: (N, 3) in the base frame, m.
+        points: (N, 3) in the machine frame, m.
 
     Returns:
         (N,), in 0 to 1.

@@ -11,11 +11,12 @@ from typing import Any, Final, cast
 
 from deltacam.errors import RobotError
 from deltacam.robot.checks import check_workspace
-from deltacam.robot.dimensions import DeltaGeometry
-from deltacam.robot.robot import Controller, Interpolation, JointLimits, Robot, ToolRating, Triple
+from deltacam.robot.dimensions import HANGING, DeltaGeometry, Mount, PerArm, Triple
+from deltacam.robot.robot import Controller, Interpolation, JointLimits, Robot, ToolRating
 from deltacam.robot.workspace import Workspace
 
 _WHERE: Final = "meta.robot"
+_GEOMETRY: Final = tuple(DeltaGeometry.__dataclass_fields__)
 
 
 def to_meta(robot: Robot) -> dict[str, Any]:
@@ -34,7 +35,7 @@ def from_meta(meta: Mapping[str, Any]) -> Robot:
     top = _Section(meta, _WHERE, ("name", "fingerprint", *sections))
     robot = Robot(
         name=top.text("name"),
-        geometry=_geometry(top.section("geometry", tuple(DeltaGeometry.__dataclass_fields__))),
+        geometry=_geometry(top.section("geometry", _GEOMETRY, may_lack=("mount",))),
         joints=_joints(top.section("joints", ("min", "max", "max_speed", "max_acceleration", "max_jerk"))),
         tool=_tool(top.section("tool", tuple(ToolRating.__dataclass_fields__))),
         workspace=_workspace(top.section("workspace", tuple(Workspace.__dataclass_fields__))),
@@ -50,10 +51,10 @@ def from_meta(meta: Mapping[str, Any]) -> Robot:
 class _Section:
     """A JSON object whose keys are known, and whose values are taken by type."""
 
-    def __init__(self, values: object, where: str, keys: tuple[str, ...]) -> None:
+    def __init__(self, values: object, where: str, keys: tuple[str, ...], *, may_lack: tuple[str, ...] = ()) -> None:
         if not isinstance(values, Mapping):
             raise RobotError(f"expected an object, got {type(values).__name__}", where=where)
-        missing = [key for key in keys if key not in values]
+        missing = [key for key in keys if key not in values and key not in may_lack]
         extra = sorted(str(key)[:40] for key in values if key not in keys)
         if missing or extra:
             words = [f"missing {', '.join(missing)}"] if missing else []
@@ -62,8 +63,17 @@ class _Section:
         self._values: Mapping[str, object] = values
         self._where = where
 
-    def section(self, key: str, keys: tuple[str, ...]) -> _Section:
-        return _Section(self._values[key], f"{self._where}.{key}", keys)
+    def has(self, key: str) -> bool:
+        return key in self._values
+
+    def section(self, key: str, keys: tuple[str, ...], *, may_lack: tuple[str, ...] = ()) -> _Section:
+        return _Section(self._values[key], f"{self._where}.{key}", keys, may_lack=may_lack)
+
+    def flag(self, key: str) -> bool:
+        value = self._values[key]
+        if not isinstance(value, bool):
+            raise RobotError(f"{key} is not true or false but {type(value).__name__}", where=self._where)
+        return value
 
     def text(self, key: str) -> str:
         value = self._values[key]
@@ -86,6 +96,9 @@ class _Section:
     def triple(self, key: str) -> Triple:
         return cast("Triple", self.numbers(key, 3))
 
+    def per_arm(self, key: str) -> PerArm:
+        return self.triple(key) if isinstance(self._values[key], list) else self.number(key)
+
     def optional_triple(self, key: str) -> Triple | None:
         return None if self._values[key] is None else self.triple(key)
 
@@ -101,11 +114,22 @@ class _Section:
 
 def _geometry(section: _Section) -> DeltaGeometry:
     return DeltaGeometry(
-        base_radius=section.number("base_radius"),
-        effector_radius=section.number("effector_radius"),
-        upper_arm=section.number("upper_arm"),
-        forearm=section.number("forearm"),
+        base_radius=section.per_arm("base_radius"),
+        effector_radius=section.per_arm("effector_radius"),
+        upper_arm=section.per_arm("upper_arm"),
+        forearm=section.per_arm("forearm"),
         azimuths=section.triple("azimuths"),
+        mount=_mount(section.section("mount", tuple(Mount.__dataclass_fields__))) if section.has("mount") else HANGING,
+    )
+
+
+def _mount(section: _Section) -> Mount:
+    return Mount(
+        x=section.number("x"),
+        y=section.number("y"),
+        z=section.number("z"),
+        rotation=section.number("rotation"),
+        upside_down=section.flag("upside_down"),
     )
 
 

@@ -11,11 +11,13 @@ from typing import Final, cast, get_args
 from deltacam.errors import RobotError
 from deltacam.robot.bounds import BOUNDS, Bound
 from deltacam.robot.checks import check_reach, check_workspace
-from deltacam.robot.dimensions import STANDARD_AZIMUTHS, DeltaGeometry
+from deltacam.robot.dimensions import STANDARD_AZIMUTHS, DeltaGeometry, Mount, Triple
 from deltacam.robot.limits import derive_max_acceleration, derive_max_speed
-from deltacam.robot.robot import Controller, Interpolation, JointLimits, Robot, ToolRating, Triple
+from deltacam.robot.robot import Controller, Interpolation, JointLimits, Robot, ToolRating
 from deltacam.robot.workspace import DEFAULT_PRESSURE_ANGLE_DEG, Workspace
 from deltacam.settings import REQUIRED, Required, Table, read_table
+
+DEFAULT_ROBOT: Final = "delta-300"
 
 _PROFILES: Final = resources.files("deltacam.robot") / "profiles"
 _LIMITS: Final = ("max_speed", "max_acceleration", "max_jerk")
@@ -69,7 +71,7 @@ def _read(path: Path) -> Robot:
 def _robot(top: Table) -> Robot:
     name = top.text("name")
     description, source = top.text("description", default=""), top.text("source", default="")
-    geometry = _geometry(top.table("geometry"))
+    geometry = _geometry(top.table("geometry"), _mount(top.table("mount", required=False)))
     tool = _tool(top.table("tool"))
     workspace = _workspace(top.table("workspace"))
     controller = _controller(top.table("controller", required=False))
@@ -113,24 +115,38 @@ def _derived(
     return found
 
 
-def _geometry(table: Table) -> DeltaGeometry:
+def _geometry(table: Table, mount: Mount) -> DeltaGeometry:
     azimuths = BOUNDS["azimuths"]
     standard = not table.has(azimuths.key)
     return DeltaGeometry(
         base_radius=_radius(table, "base"),
         effector_radius=_radius(table, "effector"),
-        upper_arm=_number(table, BOUNDS["upper_arm"]),
-        forearm=_number(table, BOUNDS["forearm"]),
+        upper_arm=_triple(table, BOUNDS["upper_arm"]),
+        forearm=_triple(table, BOUNDS["forearm"]),
         azimuths=STANDARD_AZIMUTHS if standard else _triple(table, azimuths, repeat=False),
+        mount=mount,
     )
 
 
-def _radius(table: Table, part: str) -> float:
-    """The radius of the base or the effector, given as it is or by the side of the triangle about it."""
+def _radius(table: Table, part: str) -> Triple:
+    """The radii of the base or the effector, given as they are or by the side of the triangle about it."""
     radius, side = BOUNDS[f"{part}_radius"], BOUNDS[f"{part}_side"]
     if table.has(radius.key) and table.has(side.key):
         raise table.problem(f"{radius.key} and {side.key} are both given", hint="keep one of them")
-    return _number(table, side if table.has(side.key) else radius)
+    if not table.has(side.key):
+        return _triple(table, radius)
+    value = _number(table, side)
+    return value, value, value
+
+
+def _mount(table: Table) -> Mount:
+    return Mount(
+        x=_number(table, BOUNDS["mount_x"], default=0.0),
+        y=_number(table, BOUNDS["mount_y"], default=0.0),
+        z=_number(table, BOUNDS["mount_z"], default=0.0),
+        rotation=_number(table, BOUNDS["mount_rotation"], default=0.0),
+        upside_down=table.flag("upside_down", default=False),
+    )
 
 
 def _tool(table: Table) -> ToolRating:

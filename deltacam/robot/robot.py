@@ -14,10 +14,9 @@ from deltacam.errors import RobotError
 from deltacam.model import Array
 from deltacam.robot import kinematics, measures
 from deltacam.robot.bounds import BOUNDS
-from deltacam.robot.dimensions import DeltaGeometry
+from deltacam.robot.dimensions import HANGING, DeltaGeometry, Triple
 from deltacam.robot.workspace import Workspace
 
-Triple = tuple[float, float, float]
 Interpolation = Literal["linear", "cubic"]
 
 
@@ -131,7 +130,10 @@ class Robot:
             raise RobotError("name must be one line of 1 to 200 characters")
 
     def motion_values(self) -> dict[str, Any]:
-        """What decides how the robot moves, in SI, as JSON has it: dicts, lists, numbers, strings and None."""
+        """What decides how the robot moves, in SI, as JSON has it: dicts, lists, numbers, strings and None.
+
+        A base that hangs in the middle of the machine has no ``mount``: a robot has one description.
+        """
         values = {
             "geometry": asdict(self.geometry),
             "joints": asdict(self.joints),
@@ -140,6 +142,8 @@ class Robot:
             "controller": asdict(self.controller),
         }
         del values["joints"]["derived"]
+        if self.geometry.mount == HANGING:
+            del values["geometry"]["mount"]
         return {section: {key: _plain(value) for key, value in part.items()} for section, part in values.items()}
 
     @property
@@ -187,6 +191,8 @@ class Robot:
 
 def _plain(value: object) -> object:
     """A value as JSON has it; -0.0 becomes 0.0, which is the same place."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
     return value + 0.0 if isinstance(value, float) else value

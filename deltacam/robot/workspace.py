@@ -29,10 +29,10 @@ _ROUNDS: Final = 8  # of refinement, each four times as fine: 2 / 60 / 4**8 is 5
 
 @dataclass(frozen=True, slots=True)
 class Workspace:
-    """The sheet: a rectangle or a disc about the base's axis, and where the tool waits.
+    """The sheet: a rectangle or a disc about the machine's axis, and where the tool waits.
 
     Attributes:
-        sheet_z: height of the sheet, m, < 0.
+        sheet_z: height of the sheet in the machine, m; below the base where that hangs upright.
         width: along x, m; None for a disc.
         depth: along y, m; None for a disc.
         radius: of a disc, m; None for a rectangle.
@@ -69,7 +69,7 @@ class Workspace:
         """How far outside the sheet every point is.
 
         Args:
-            xy: (N, 2) in the base frame, m.
+            xy: (N, 2) in the machine frame, m.
 
         Returns:
             (N,) m; 0 on the sheet and on its edge.

@@ -80,8 +80,8 @@ def _settings(first: Any, second: Any, name: str = "") -> dict[str, tuple[Any, A
     """The leaves of two objects that differ, by their dotted names."""
     if isinstance(first, dict) and isinstance(second, dict):
         found: dict[str, tuple[Any, Any]] = {}
-        for key in first:
-            found |= _settings(first[key], second[key], f"{name}.{key}" if name else key)
+        for key in {**first, **second}:
+            found |= _settings(first.get(key), second.get(key), f"{name}.{key}" if name else key)
         return found
     return {} if first == second else {name: (first, second)}
 

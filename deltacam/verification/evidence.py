@@ -52,10 +52,10 @@ class Evidence:
     Attributes:
         program: the program.
         robot: the machine that it is checked against.
-        tool: where the tool is at every tick, (N, 3) m in the base frame; (0, 3) when a pose is impossible.
+        tool: where the tool is at every tick, (N, 3) m in the machine frame; (0, 3) when a pose is impossible.
         sheet: the same in the sheet frame, (N, 2) m.
         between: where the tool is half-way between every tick and the next, as the controller interpolates, (N - 1, 3)
-            m in the base frame; (0, 3) when a pose is impossible.
+            m in the machine frame; (0, 3) when a pose is impossible.
         speed: of the tool from every tick to the next, (N - 1,) m/s; (0,) when a pose is impossible.
         impossible: the first tick at which the arms cannot close, and why; empty text when there is none.
         kind: index into `KINDS` of every row, (N,).

@@ -177,10 +177,10 @@ def _off_plane(case: Example, robot: Robot, q: Array) -> float:
 def _closes(robot: Robot, q: Array) -> bool:
     """Whether the forearms reach the platform: three spheres about the elbows, moved in by its radius, meet."""
     geometry = robot.geometry
-    out = geometry.offset + geometry.upper_arm * np.cos(q)
+    out = geometry.offsets + geometry.upper_arms * np.cos(q)
     elbows = np.stack(
-        [out * np.cos(geometry.azimuths), out * np.sin(geometry.azimuths), -geometry.upper_arm * np.sin(q)], axis=1
+        [out * np.cos(geometry.azimuths), out * np.sin(geometry.azimuths), -geometry.upper_arms * np.sin(q)], axis=1
     )
     sides = [float(np.linalg.norm(elbows[i] - elbows[i - 1])) for i in range(3)]
     area = 0.5 * float(np.linalg.norm(np.cross(elbows[1] - elbows[0], elbows[2] - elbows[0])))
-    return area > 0.0 and np.prod(sides) / (4.0 * area) < geometry.forearm
+    return area > 0.0 and np.prod(sides) / (4.0 * area) < geometry.forearms[0]

@@ -180,7 +180,7 @@ def test_moving_the_point_by_the_missing_length_brings_it_to_the_edge_of_reach(x
     assume(
         abs(np.array([x, y, z]) @ w) < geometry.forearm
     )  # else the arm's plane is too far, and no motion in it helps
-    joint = geometry.offset * u + (np.array([x, y, z]) @ w) * w  # beside the joint, in the point's own plane
+    joint = geometry.offsets[arm] * u + (np.array([x, y, z]) @ w) * w  # beside the joint, in the point's own plane
     away = np.array([x, y, z]) - joint
     away *= 1.0 + (-1.0 if words == "too far" else 1.0) * float(amount) * 1e-3 / np.linalg.norm(away)
     assert abs(kinematics.reach_margin(geometry, [joint + away])[0, arm]) < 1e-5

@@ -1,5 +1,6 @@
 """Robot files: the built-in ones load, and every mistake is named with its place."""
 
+import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,6 +10,8 @@ import numpy as np
 import pytest
 
 from deltacam.errors import RobotError
+from deltacam.robot.dimensions import Mount
+from deltacam.robot.meta import from_meta, to_meta
 from deltacam.robot.reader import load_robot, profile_names
 
 ROOT = Path(__file__).parents[2]
@@ -90,6 +93,24 @@ def test_sides_of_triangles_stand_for_radii(write: Write) -> None:
         load_robot(write(("base_radius_mm = 130", "base_radius_mm = 130\nbase_side_mm = 450")))
 
 
+def test_arms_of_their_own_and_a_base_of_its_own_are_read(write: Write) -> None:
+    lengths = {
+        "base_radius_mm = 130": "base_radius_mm = [130, 131, 129]",
+        "effector_radius_mm = 35": "effector_radius_mm = [35, 35, 36]",
+        "upper_arm_mm = 300": "upper_arm_mm = [300, 300.5, 299.5]",
+        "forearm_mm = 700": "forearm_mm = [700, 700, 701]\nazimuths_deg = [-90.5, 30, 150]",
+    }
+    mount = "[mount]\nx_mm = 2\ny_mm = -3\nz_mm = 250\nrotation_deg = 60\nupside_down = true\n\n[joints]"
+    robot = load_robot(write(*lengths.items(), ("sheet_z_mm = -650", "sheet_z_mm = 900"), ("[joints]", mount)))
+    assert robot.geometry.base_radii == pytest.approx([0.130, 0.131, 0.129])
+    assert robot.geometry.effector_radii == pytest.approx([0.035, 0.035, 0.036])
+    assert robot.geometry.upper_arms == pytest.approx([0.3, 0.3005, 0.2995])
+    assert robot.geometry.forearms == pytest.approx([0.7, 0.7, 0.701])
+    assert np.degrees(robot.geometry.azimuths) == pytest.approx((-90.5, 30.0, 150.0))
+    assert robot.geometry.mount == Mount(x=0.002, y=-0.003, z=0.25, rotation=np.radians(60.0), upside_down=True)
+    assert from_meta(json.loads(json.dumps(to_meta(robot)))) == robot
+
+
 def test_a_disc_and_a_cubic_controller_are_read(write: Write) -> None:
     sheet = ("width_mm = 300\ndepth_mm = 300", "radius_mm = 180")
     robot = load_robot(write(sheet, ('interpolation = "linear"', 'interpolation = "cubic"')))
@@ -137,7 +158,7 @@ def test_a_missing_file_is_named() -> None:
         ("max_jerk_deg_s3 = 366_000", "max_jerk_deg_s3 = 0", "joints", "max_jerk_deg_s3 = 0 is outside"),
         ("max_speed_m_min = 60", "max_speed_m_min = 1001", "tool", "max_speed_m_min = 1001 is outside"),
         ("\n[tool]", "\n[tools]", "", "the section [tool] is missing"),
-        ("sheet_z_mm = -650", "sheet_z_mm = 650", "workspace", "sheet_z_mm = 650 is outside -20000 to -1"),
+        ("sheet_z_mm = -650", "sheet_z_mm = 650", "workspace", "sheet_z_mm = 650 is not below the base, which"),
         ("sheet_z_mm = -650", "sheet_z_mm = -1100", "workspace", "does not reach its whole sheet"),
         ("park_mm = [0, 0]", "park_mm = [0, 151]", "workspace", "park is 1.000 mm outside the sheet"),
         ("min_deg = -45", "min_deg = 0", "workspace", "min_deg 0 deg is exceeded by 4.143 deg with the tool at"),

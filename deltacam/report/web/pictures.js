@@ -152,12 +152,14 @@ class Workspace {
 
   /** Shoulder, elbow and wrist of every arm, in pixels: the elbow lies in the vertical plane of its joint. */
   arms(i, tool) {
-    const { azimuths, base, upper, effector } = this.data.arms;
+    const { centre, azimuths, base, upper, effector } = this.data.arms;
+    const from = ([x, y], [dx, dy]) => [x + dx, y + dy];
     return azimuths.map((azimuth, joint) => {
       const angle = (this.part.samples.series[`angle ${joint + 1}`][0][i] * Math.PI) / 180;
-      const wrist = this.turn([effector, 0], azimuth);
-      const along = [base, base + upper * Math.cos(angle)].map((reach) => this.turn([reach, 0], azimuth));
-      return [...along, [wrist[0] + tool[0], wrist[1] + tool[1]]].map(([x, y]) => this.overlay.pixel(x, y));
+      const elbow = base[joint] + upper[joint] * Math.cos(angle);
+      const along = [base[joint], elbow].map((reach) => from(centre, this.turn([reach, 0], azimuth)));
+      const wrist = from(tool, this.turn([effector[joint], 0], azimuth));
+      return [...along, wrist].map(([x, y]) => this.overlay.pixel(x, y));
     });
   }
 }

@@ -9,7 +9,7 @@ import numpy as np
 
 from deltacam.model import Block, Check, IntArray, Process
 from deltacam.program.program import TICK_COLUMN, Program
-from deltacam.robot.robot import Triple
+from deltacam.robot.dimensions import Triple
 from deltacam.verification.checks.measure import at_tick
 from deltacam.verification.evidence import Evidence
 

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from deltacam.model import Array, BoolArray, Check, Contour, IntArray
-from deltacam.robot.robot import Triple
+from deltacam.robot.dimensions import Triple
 from deltacam.verification.evidence import Evidence
 
 DIFFERENCES: Final = 1.001
