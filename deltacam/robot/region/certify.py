@@ -15,7 +15,7 @@ import numpy as np
 from deltacam.model import Array
 from deltacam.robot.dimensions import DeltaGeometry
 from deltacam.robot.region.margins import cell_margins, margins
-from deltacam.robot.region.requirements import REACH, Requirements
+from deltacam.robot.region.requirements import Requirements
 from deltacam.robot.region.shapes import Region
 
 Verdict = Literal["certified", "refuted", "undecided"]
