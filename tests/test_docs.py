@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import click
 import numpy as np
@@ -149,10 +149,16 @@ def test_documented_output_matches_up_to_wildcards_and_half_a_percent() -> None:
 
 def test_every_option_of_every_command_has_its_row() -> None:
     page = (DOCS / "reference" / "commands.md").read_text()
-    sections = dict(re.findall(r"^## deltacam (\w+)(.*?)(?=^## |\Z)", page, flags=re.DOTALL | re.MULTILINE))
-    assert sorted(sections) == sorted(command_line.COMMANDS)
+    name = r"^##+ deltacam ([a-z]+(?: [a-z]+)?)\b"
+    sections = dict(re.findall(rf"{name}(.*?)(?=^##|\Z)", page, flags=re.DOTALL | re.MULTILINE))
+    studies = importlib.import_module("deltacam_cli.robot").COMMANDS
+    assert sorted(sections) == sorted([*command_line.COMMANDS, *(f"robot {name}" for name in studies)])
     for command, section in sections.items():
-        options = importlib.import_module(f"deltacam_cli.{command}").command.params
+        found: click.Command = command_line.cli
+        for name in command.split():
+            group = cast("click.Group", found)
+            found = cast("click.Command", group.get_command(click.Context(group), name))
+        options = found.params
         for option in options:
             if isinstance(option, click.Option):
                 rows = [row for row in section.splitlines() if row.startswith("| ") and f"{option.opts[-1]}" in row]
@@ -178,7 +184,7 @@ def test_every_key_of_a_process_file_has_its_row(tmp_path: Path) -> None:
         assert f"\n| `{key}` | " in page, key
 
 
-@pytest.mark.parametrize("section", ["", "geometry", "joints", "tool", "workspace", "controller"])
+@pytest.mark.parametrize("section", ["", "geometry", "joints", "mount", "tool", "workspace", "controller"])
 def test_every_key_of_a_robot_file_has_its_row_with_its_bounds(section: str, tmp_path: Path) -> None:
     page = (DOCS / "reference" / "robot-file.md").read_text()
     text = (ROOT / "samples" / "robot.toml").read_text()

@@ -116,7 +116,7 @@ def _marks(marks: Sequence[tuple[float, float, str]]) -> list[Json]:
             "x": [x for x, _, _ in marks],
             "y": [y for _, y, _ in marks],
             "text": [name for _, _, name in marks],
-            "textposition": "top center",
+            "textposition": ["bottom center" if y > 0.0 else "top center" for _, y, _ in marks],
             "hoverinfo": "skip",
             "marker": {"color": palette.LIMIT.light, "size": 9, "symbol": "x-thin-open"},
             "textfont": {"color": palette.STRONG.light, "size": 12},

@@ -63,7 +63,8 @@ def rate(robot: Robot) -> Rating:
         RobotError: a part of the sheet is out of reach.
     """
     sheet = robot.workspace
-    mu1, mu2 = (sheet.worst(lambda p, kind=kind: robot.pressure_angles(p)[kind].max(axis=1)) for kind in (0, 1))
+    mu1 = sheet.worst(lambda points: robot.pressure_angles(points)[0].max(axis=1))
+    mu2 = sheet.worst(lambda points: robot.pressure_angles(points)[1].max(axis=1))
     condition, where = sheet.worst(lambda points: -robot.inverse_condition(points))
     return Rating(
         speed_needed=_most(robot, lambda points: speed_needed(robot, points)),

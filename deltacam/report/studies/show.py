@@ -12,6 +12,7 @@ from deltacam.model import Array
 from deltacam.report.charts import heat_map
 from deltacam.report.picture import sheet_edge
 from deltacam.report.study import Chart, Study, Table
+from deltacam.robot.dimensions import HANGING
 from deltacam.robot.rating import (
     Extreme,
     Rating,
@@ -48,7 +49,7 @@ def _geometry(robot: Robot) -> list[tuple[str, str]]:
         ("forearm", _lengths(geometry.forearm)),
         ("azimuths", ", ".join(f"{angle * _DEGREES:g}" for angle in geometry.azimuths) + " deg"),
     ]
-    if robot.geometry.mount != type(mount)():
+    if mount != HANGING:
         place = ", ".join(f"{to_mm(value):g}" for value in (mount.x, mount.y, mount.z))
         turned = f", turned {mount.rotation * _DEGREES:g} deg" if mount.rotation else ""
         facts.append(("mount", f"base at ({place}) mm{turned}{', upside down' if mount.upside_down else ''}"))
