@@ -10,6 +10,7 @@ from deltacam_cli.main import LateGroup
 
 COMMANDS: Final = {
     "show": "Show what ROBOT can do over its sheet.",
+    "design": "Find the smallest robot for a prescribed workspace.",
 }
 """The commands and their short help; a command ``x`` is ``deltacam_cli.robot.x:command``."""
 

@@ -108,7 +108,9 @@ def _reach() -> Demand:
     def excess(view: View) -> Array:
         return np.asarray(REACH_MARGIN - view.poses.reach.min(axis=0))
 
-    return Demand("reach_margin", "reach margin / upper arm", "", REACH_MARGIN, True, excess, lambda e: REACH_MARGIN - e)
+    return Demand(
+        "reach_margin", "reach margin / upper arm", "", REACH_MARGIN, True, excess, lambda e: REACH_MARGIN - e
+    )
 
 
 def _joint_min(limit: float) -> Demand:

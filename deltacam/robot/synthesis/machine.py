@@ -45,9 +45,7 @@ def machine(design: Design, *, name: str, sheet_z: float | None = None) -> Robot
     sheet = _sheet(design, height)
     tool = ToolRating(wish.speed or SPEED, wish.acceleration or ACCELERATION)
     speed, acceleration = wish.max_joint_speed, wish.max_joint_acceleration
-    derived = tuple(
-        key for key, value in (("max_speed", speed), ("max_acceleration", acceleration)) if value is None
-    )
+    derived = tuple(key for key, value in (("max_speed", speed), ("max_acceleration", acceleration)) if value is None)
     if speed is None:
         speed = derive_max_speed(design.geometry, sheet, speed=tool.max_speed)
     if acceleration is None:

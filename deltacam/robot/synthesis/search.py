@@ -26,6 +26,7 @@ _SMALLEST: Final = 0.3  # La + Lb at least, in diagonals: no shorter arms reach 
 _POPULATION: Final = 20  # per unknown
 _ROUNDS: Final = 300
 _CONVERGED: Final = 1e-4  # spread of the population's sizes, relative
+_HARDNESS: Final = 10.0  # of the bounds on the dimensions beside the demands, which are what an impossible wish misses
 _SIDE: Final = 7  # points along a side of the surface
 
 
@@ -46,9 +47,9 @@ class Problem:
     relaxed: int | None = None
 
     def violations(self, candidates: Array, points: Array) -> Array:
-        """What every demand misses, 0 where it is met: (C, K), and in the last column the bounds, in diagonals."""
+        """What every demand misses, 0 where it is met: (C, K), and in the last column the bounds."""
         missed = excesses(self.demands, candidates, points).max(axis=2).T + self.margin
-        outside = bounds_excess(self.wish, candidates) / self.wish.shape.diagonal
+        outside = _HARDNESS * bounds_excess(self.wish, candidates) / self.wish.shape.diagonal
         return np.maximum(np.column_stack((missed, outside.max(axis=1))), 0.0)
 
     def objective(self, candidates: Array, points: Array) -> Array:
@@ -60,7 +61,9 @@ class Problem:
             return np.asarray(np.where(others > 0.0, 10.0 + others, wanted))
         missed = violations.sum(axis=1)
         limit = self.wish.size_limit
-        return np.asarray(np.where(missed > 0.0, limit + self.wish.shape.diagonal * missed, candidates[:, :3].sum(axis=1)))
+        return np.asarray(
+            np.where(missed > 0.0, limit + self.wish.shape.diagonal * missed, candidates[:, :3].sum(axis=1))
+        )
 
 
 def search_points(wish: Wish) -> Array:
@@ -68,9 +71,7 @@ def search_points(wish: Wish) -> Array:
     return wish.shape.place(np.unique(np.vstack((surface(_SIDE), grid(3))), axis=0))
 
 
-def search(
-    problem: Problem, *, seed: int, progress: Progress | None = None, start: Array | None = None
-) -> Array:
+def search(problem: Problem, *, seed: int, progress: Progress | None = None, start: Array | None = None) -> Array:
     """The best candidate (4,) m that differential evolution finds; it may miss demands.
 
     Args:
