@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 @click.option("--base-radius-min", metavar="LENGTH", help="Least radius of the base: the room for the motors.")
 @click.option("--head-radius", metavar="LENGTH", help="Radius of the effector: the room for the head.")
 @click.option("--clearance", metavar="LENGTH", default="1", show_default=True, help="From base to workspace, at least.")
-@click.option("--max-size", metavar="LENGTH", help="Largest (R - r) + La + Lb; eight diagonals unless given.")
+@click.option(
+    "--max-size", metavar="LENGTH", help="Largest (R - r) + La + Lb; five diagonals of the workspace unless given."
+)
 @click.option("--speed", metavar="SPEED", help="Rated speed of the tool, mm/s unless a unit is given: 60m/min.")
 @click.option("--acceleration", type=float, metavar="M/S2", help="Rated acceleration of the tool, m/s2.")
 @click.option("--max-joint-speed", type=float, metavar="DEG/S", help="Most a joint may need for the rated speed.")

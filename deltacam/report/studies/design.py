@@ -135,7 +135,7 @@ def _section(design: Design) -> Chart:
         y_mm=to_mm(1.0) * (z + middle),
         values=values,
         unit="1/cond",
-        outlines=[to_mm(1.0) * (box + [0.0, middle])],
+        outlines=[to_mm(1.0) * (box + np.array([0.0, middle]))],
         axes=("y", "z"),
     )
 

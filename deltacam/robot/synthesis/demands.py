@@ -19,7 +19,7 @@ from deltacam.robot.synthesis import kernel
 from deltacam.robot.synthesis.wish import Wish
 
 REACH_MARGIN: Final = 0.001
-"""The least reach margin, of the upper arm: the edge of reach itself, where a joint no longer moves the tool, is out."""
+"""The least reach margin, of the upper arm. At the edge of reach itself a joint no longer moves the tool."""
 
 
 class View:

@@ -5,9 +5,9 @@ middle of its workspace. The notation, and every formula, is that of `deltacam.r
 and `deltacam.robot.limits`; here they do not refuse a pose out of reach but continue it, so that a search can see how
 far away it is: the elbow stays where it is on the edge of reach, and the distance is in ``reach``.
 
-Everything follows from S_i and t_i. The rows of the inverse Jacobian are S_i / (La t_i), so the squares of its singular
-values are the eigenvalues of the Gram matrix S_i.S_j / (La^2 t_i t_j); they are taken from its characteristic polynomial
-in closed form (Smith 1961), which is exact to rounding where the matrix is far from singular.
+Everything follows from S_i and t_i. The rows of the inverse Jacobian are S_i / (La t_i), so the squares of its
+singular values are the eigenvalues of the Gram matrix S_i.S_j / (La^2 t_i t_j); they are taken from its characteristic
+polynomial in closed form (Smith 1961), which is exact to rounding where the matrix is far from singular.
 """
 
 from __future__ import annotations

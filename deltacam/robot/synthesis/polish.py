@@ -21,7 +21,7 @@ from deltacam.robot.synthesis.wish import Wish
 
 _SIDE: Final = 21  # points along a side of the surface
 _CLOSEST: Final = 8  # points per demand that enter the linear program
-_PRICE: Final = 20.0  # of an excess, in diagonals; more than a demand is worth at any optimum
+_PRICE: Final = 1e3  # of an excess, in diagonals; more than a demand is worth at any optimum
 _TRUST: Final = 0.02  # of every unknown at first, in diagonals
 _LEAST_TRUST: Final = 1e-8  # then it is the bottom
 _STEPS: Final = 80

@@ -50,7 +50,7 @@ class Problem:
         """What every demand misses, 0 where it is met: (C, K), and in the last column the bounds."""
         missed = excesses(self.demands, candidates, points).max(axis=2).T + self.margin
         outside = _HARDNESS * bounds_excess(self.wish, candidates) / self.wish.shape.diagonal
-        return np.maximum(np.column_stack((missed, outside.max(axis=1))), 0.0)
+        return np.asarray(np.maximum(np.column_stack((missed, outside.max(axis=1))), 0.0))
 
     def objective(self, candidates: Array, points: Array) -> Array:
         """What is to be small, (C,): the size where all is met, and above every size where something is missed."""
@@ -88,7 +88,7 @@ def search(problem: Problem, *, seed: int, progress: Progress | None = None, sta
     def objective(unknowns: Array) -> Array:
         return problem.objective(decode(unknowns.T), points)
 
-    def count(intermediate_result: OptimizeResult) -> None:
+    def count(intermediate_result: OptimizeResult) -> None:  # noqa: ARG001 - scipy looks at this name
         rounds[0] += 1
         if progress is not None:
             progress(rounds[0], _ROUNDS)
@@ -114,14 +114,14 @@ def decode(unknowns: Array) -> Array:
     """The candidates (C, 4) of unknowns (C, 4)."""
     arms = np.exp(unknowns[:, 0])
     upper, offset, depth = unknowns[:, 1] * arms, unknowns[:, 2] * arms, unknowns[:, 3] * arms
-    return np.column_stack((offset, upper, arms - upper, -depth))
+    return np.asarray(np.column_stack((offset, upper, arms - upper, -depth)))
 
 
 def encode(candidates: Array) -> Array:
     """The unknowns (C, 4) of candidates (C, 4)."""
     offset, La, Lb, middle = candidates.T
     arms = La + Lb
-    return np.column_stack((np.log(arms), La / arms, offset / arms, -middle / arms))
+    return np.asarray(np.column_stack((np.log(arms), La / arms, offset / arms, -middle / arms)))
 
 
 def _limits(wish: Wish) -> list[tuple[float, float]]:

@@ -97,7 +97,10 @@ class CylinderShape:
         """Points of the unit cube (N, 3), which are radius, angle and height, between arm 1 and the gap beside it."""
         angle = -np.pi / 2.0 + unit[:, 1] * np.pi / 3.0
         radius = unit[:, 0] * self.diameter / 2.0
-        return np.column_stack((radius * np.cos(angle), radius * np.sin(angle), (unit[:, 2] - 0.5) * self.height))
+        placed: Array = np.column_stack(
+            (radius * np.cos(angle), radius * np.sin(angle), (unit[:, 2] - 0.5) * self.height)
+        )
+        return placed
 
 
 def surface(count: int) -> Array:
