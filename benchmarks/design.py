@@ -51,7 +51,8 @@ class Sampled(NamedTuple):
 def sample(found: Design, count: int, seed: int = 1) -> Sampled:
     """The worst over random points of the box of a design."""
     shape = found.wish.shape
-    assert isinstance(shape, BoxShape)
+    if not isinstance(shape, BoxShape):
+        raise TypeError("the check is for boxes")
     random, parts = np.random.default_rng(seed), []
     lengths = tuple(float(value) for value in found.candidate[:3])
     for start in range(0, count, _CHUNK):

@@ -112,7 +112,7 @@ def surface(count: int) -> Array:
 def grid(count: int) -> Array:
     """``count``^3 points of the unit cube, its surface included, (N, 3)."""
     side = np.linspace(0.0, 1.0, count)
-    return np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1).reshape(-1, 3)
+    return np.asarray(np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1).reshape(-1, 3))
 
 
 def _check_sides(*sides: tuple[str, float]) -> None:
