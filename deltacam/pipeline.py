@@ -31,6 +31,8 @@ from deltacam.model import (
     Selection,
 )
 from deltacam.motion import setpoints
+from deltacam.placing.find import By, Found, Task, find
+from deltacam.placing.sampled import Sampled
 from deltacam.program import csv
 from deltacam.program.atomic import replace_when_done, write_whole
 from deltacam.program.outputs import Outputs, make_folder
@@ -75,6 +77,7 @@ def plan(
     selection: Selection = EVERYTHING,
     at: tuple[float, float] = (0.0, 0.0),
     rotation: float = 0.0,
+    place: By | None = None,
     mode: Mode = Mode.CUT,
     jobs: int | None = None,
     what_if: bool | None = None,
@@ -91,6 +94,7 @@ def plan(
         selection: which layers count, and how far apart ends may be; the rules are those of the process.
         at: where the centre of what is cut comes to lie, machine frame, m.
         rotation: of the drawing about that centre, rad, counter-clockwise.
+        place: what the place and the rotation are chosen by, as `best_places` finds them; None takes those given.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
         jobs: how many processes plan the motion, >= 1; None takes as many as pay. The program is the same for any.
         what_if: whether to find out how long the cuts would take without each limit; None does where that is quick.
@@ -108,7 +112,11 @@ def plan(
     selection = replace(selection, rules=process.rules, open=process.open)
     part = read_drawing(drawing, unit=unit, default_unit=default_unit, selection=selection)
     how = _How(robot, process, at, rotation, mode, jobs, what_if, progress)
+    found = None if place is None else _placed(part, how, place)
+    if found is not None:
+        how = how._replace(at=found.best[0].spot.at, rotation=found.best[0].spot.rotation)
     program, held, findings = _program(part, how)
+    findings += () if found is None else (_where(found),)
     progress("write", 0, 1)
     content = _content(program)
     program = csv.read(io.BytesIO(content), name=Outputs.of(drawing, ".").program.name)
@@ -118,6 +126,46 @@ def plan(
     report = replace(report, summary=summary, findings=(*report.findings, *findings), held=held)
     progress("verify", 1, 1)
     return Planned(program, report, part, content)
+
+
+def best_places(
+    drawing: str | Path,
+    *,
+    robot: Robot | str | Path = DEFAULT_ROBOT,
+    process: Process | str | Path = DEFAULT_PROCESS,
+    unit: str | None = None,
+    default_unit: str | None = None,
+    selection: Selection = EVERYTHING,
+    by: By = "both",
+    jobs: int | None = None,
+    progress: Progress = _silent,
+) -> tuple[Found, Robot]:
+    """Where on the sheet, and how turned, a drawing is cut fastest and most accurately.
+
+    Args:
+        drawing: path of a DXF file.
+        robot: a robot, a built-in name, or the path of a robot file.
+        process: a process, a built-in name, or the path of a process file.
+        unit: as `plan`.
+        default_unit: as `plan`.
+        selection: as `plan`.
+        by: whether the time, the error of the tool, or both are to be small.
+        jobs: as `plan`.
+        progress: is told what is going on.
+
+    Returns:
+        the places, planned, the best first, and the robot.
+
+    Raises:
+        DeltacamError: as `plan`; or the part fits nowhere, which says by how much.
+    """
+    robot = robot if isinstance(robot, Robot) else load_robot(robot)
+    process = check_process(process if isinstance(process, Process) else load_process(process))
+    progress("read", 0, 1)
+    selection = replace(selection, rules=process.rules, open=process.open)
+    part = read_drawing(drawing, unit=unit, default_unit=default_unit, selection=selection)
+    how = _How(robot, process, (0.0, 0.0), 0.0, Mode.CUT, jobs, False, progress)
+    return _placed(part, how, by), robot
 
 
 def plan_to_folder(
@@ -173,7 +221,12 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
     how.progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
     placement.refuse_outside(
-        shifted.cuts, robot=robot, placement=where, unit=part.unit_in_words, metres_per_unit=part.metres_per_unit
+        shifted.cuts,
+        contours=part.contours,
+        robot=robot,
+        placement=where,
+        unit=part.unit_in_words,
+        metres_per_unit=part.metres_per_unit,
     )
     moves = (_frame if how.mode is Mode.FRAME else _cutting)(part, shifted.cuts, how, where)
     program = Program(
@@ -190,10 +243,53 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
     return program, moves.held, shifted.findings
 
 
+def _placed(part: Drawing, how: _How, by: By) -> Found:
+    """The places and turns at which a drawing is cut best."""
+    robot, process = how.robot, how.process
+    if any(contour.operation is Operation.ENGRAVE for contour in part.contours):
+        setpoints.engraving(process)
+    how.progress("kerf", 0, 1)
+    cuts = kerf.offset(part.contours, kerf=process.kerf).cuts
+    footprint = placement.footprint(cuts, part.contours)
+    placement.refuse_everywhere(footprint, robot=robot)
+    quiet = how._replace(what_if=False, mode=Mode.CUT, progress=_silent)
+
+    def sample(at: tuple[float, float], rotation: float) -> Sampled:
+        where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
+        ordered, error = _ordered(part, cuts, how, where), part.conversion_error
+        moves, rests = setpoints.moves_of(ordered, robot=robot, process=process, placement=where, drawing_error=error)
+        park, resting = np.array(robot.workspace.park), (rests - 1) / robot.controller.rate_hz
+        return Sampled.of(moves, at=at, rotation=rotation, park=park, resting=resting)
+
+    def duration(at: tuple[float, float], rotation: float) -> float:
+        where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
+        return (len(_cutting(part, cuts, quiet, where).q) - 1) / robot.controller.rate_hz
+
+    task = Task(footprint, robot, sample, duration)
+    return find(task, by=by, progress=lambda done, total: how.progress("place", done, total))
+
+
+def _where(found: Found) -> Finding:
+    """What a person should know of the place that was chosen."""
+    best = found.best[0]
+    what = f"placed by {found.by if found.by != 'both' else 'time and accuracy'}: {best.spot.options}"
+    if found.centre is None:
+        return Finding(f"{what}; at the centre the part does not fit", kind="place")
+    if best == found.centre:
+        return Finding(f"{what}; no place that was planned is better than the centre", kind="place")
+    errors = f"{best.worst * 1e3:.1f} instead of {found.centre.worst * 1e3:.1f} um per mrad of the joints"
+    times = f"{best.time:.3f} instead of {found.centre.time:.3f} s at the centre"
+    return Finding(f"{what}; {times}, error of the tool {errors}", kind="place")
+
+
+def _ordered(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Cut, ...]:
+    parents = {contour.number: contour.parent for contour in part.contours}
+    return order.order(cuts, parents=parents, start=_to_sheet(how.robot.workspace.park, where))
+
+
 def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> setpoints.Setpoints:
     how.progress("order", 0, 1)
-    parents = {contour.number: contour.parent for contour in part.contours}
-    ordered = order.order(cuts, parents=parents, start=_to_sheet(how.robot.workspace.park, where))
+    ordered = _ordered(part, cuts, how, where)
     return setpoints.plan_motion(
         ordered,
         robot=how.robot,

@@ -34,6 +34,12 @@ _OTHER_SPELLINGS: Final[dict[str, tuple[str, ...]]] = {
     "pt": ("point", "points"),
 }
 _LENGTH_ALIASES: Final = {other: unit for unit, others in _OTHER_SPELLINGS.items() for other in others}
+_FINE_ANGLES: Final = {
+    "arcmin": math.radians(1.0 / 60.0),
+    "arcsec": math.radians(1.0 / 3600.0),
+    "deg": math.radians(1.0),
+    "rad": 1.0,
+}
 _SECONDS_PER: Final[dict[str, float]] = {"s": 1.0, "min": 60.0}
 
 USUAL_SIZES: Final = (10e-3, 1.5)
@@ -145,6 +151,25 @@ def parse_angle(text: str) -> float:
     if unit not in ("", "deg", "rad"):
         raise DeltacamError(f"unknown unit of angle {unit!r}", hint="use deg or rad")
     return value if unit == "rad" else math.radians(value)
+
+
+def parse_fine_angle(text: str) -> float:
+    """The small angle in radians that ``text`` states: ``1arcmin``, ``20arcsec``, ``0.01deg``, ``1e-4rad``, ``16bit``.
+
+    A bare number is degrees; ``16bit`` is the step of an encoder that divides a turn into 2^16.
+
+    Raises:
+        DeltacamError: not a finite number, an unknown unit, or a number of bits that is not 1 to 64 and whole.
+    """
+    value, unit = _split(text, "small angle", "1arcmin or 0.01deg")
+    if unit == "bit":
+        if not (1.0 <= value <= 64.0 and value.is_integer()):
+            raise DeltacamError(f"an encoder of {value:g} bit is not possible", hint="write it like 16bit")
+        return math.ldexp(math.tau, -int(value))
+    unit = unit or "deg"
+    if unit not in _FINE_ANGLES:
+        raise DeltacamError(f"unknown unit of angle {unit!r}", hint=f"use {', '.join(_FINE_ANGLES)} or bit")
+    return value * _FINE_ANGLES[unit]
 
 
 def parse_jerk(text: str) -> float | None:

@@ -15,7 +15,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from deltacam.errors import DeltacamError
-from deltacam.units import METRES_PER, metres_per, parse_angle, parse_jerk, parse_length, parse_speed, to_mm
+from deltacam.units import (
+    METRES_PER,
+    metres_per,
+    parse_angle,
+    parse_fine_angle,
+    parse_jerk,
+    parse_length,
+    parse_speed,
+    to_mm,
+)
 from deltacam_cli.main import LONGEST_MESSAGE
 
 if TYPE_CHECKING:
@@ -158,6 +167,15 @@ def angle(option: str, text: str) -> float:
         DeltacamError: it is not an angle; names the option.
     """
     return _read(option, text, parse_angle) or 0.0
+
+
+def fine_angle(option: str, text: str | None) -> float | None:
+    """The small angle in radians; a bare number is degrees.
+
+    Raises:
+        DeltacamError: it is not a small angle; names the option.
+    """
+    return _read(option, text, parse_fine_angle)
 
 
 def with_jerk(robot: Robot, text: str | None) -> Robot:

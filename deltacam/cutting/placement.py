@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from deltacam.cutting.fitting import FLATTENING, OUTSIDE, Footprint
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.geometry import rings
@@ -16,9 +17,6 @@ from deltacam.units import METRES_PER, likely_units, to_mm
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
-
-_FLATTENING: Final = 1e-6
-_OUTSIDE: Final = 1e-7
 
 
 def bounding_box(contours: Sequence[Contour] | Sequence[Cut]) -> Array:
@@ -43,28 +41,41 @@ def place(contours: Sequence[Contour], *, robot: Robot, at: tuple[float, float],
     return Placement(x=float(x), y=float(y), rotation=rotation, z=robot.workspace.sheet_z)
 
 
+def footprint(cuts: Sequence[Cut], contours: Sequence[Contour]) -> Footprint:
+    """What the cuts of these contours need of the sheet, about the place that `place` puts where it is asked to."""
+    return Footprint.of(cuts, centre=bounding_box(contours).mean(axis=0))
+
+
 def refuse_outside(
-    cuts: Sequence[Cut], *, robot: Robot, placement: Placement, unit: str, metres_per_unit: float
+    cuts: Sequence[Cut],
+    *,
+    contours: Sequence[Contour],
+    robot: Robot,
+    placement: Placement,
+    unit: str,
+    metres_per_unit: float,
 ) -> None:
     """Refuse cuts that leave the sheet.
 
     Args:
         cuts: in the sheet frame, m.
+        contours: what they cut.
         robot: gives the sheet.
         placement: of the drawing.
         unit: what the drawing's numbers were taken as, for the message.
         metres_per_unit: of that unit.
 
     Raises:
-        InfeasibleError: the worst contour is outside; says by how much, and in which unit it would fit.
+        InfeasibleError: the worst contour is outside; says by how much, and where, how turned, or in which unit it
+            would fit.
     """
     points, owner = _placed(cuts, placement)
     excess = np.maximum.reduceat(robot.workspace.excess(points), np.searchsorted(owner, np.arange(len(cuts))))
     worst = int(np.argmax(excess))
-    if excess[worst] <= _OUTSIDE:
+    if excess[worst] <= OUTSIDE:
         return
     cut = cuts[worst]
-    count = int((excess > _OUTSIDE).sum())
+    count = int((excess > OUTSIDE).sum())
     low, high = bounding_box(cuts)
     width, depth = to_mm(high[0] - low[0]), to_mm(high[1] - low[1])
     subject = "the cut" if cut.operation is Operation.CUT else "what is engraved"
@@ -74,17 +85,68 @@ def refuse_outside(
         where=cut.where,
         hint=f"with its kerf the part is {width:.1f} x {depth:.1f} mm, one unit of the drawing taken as {unit}: "
         + (
-            _fitting_unit(points, robot, (high - low) / metres_per_unit, metres_per_unit)
-            or "move it (--at), turn it (--rotate), take a larger robot (--robot), or check the unit (--units)"
+            _fitting_place(footprint(cuts, contours), robot, placement, bounding_box(contours).mean(axis=0))
+            or _fitting_unit(points, robot, (high - low) / metres_per_unit, metres_per_unit)
+            or _too_large(footprint(cuts, contours), robot)
         ),
     )
 
 
 def _placed(cuts: Sequence[Cut], placement: Placement) -> tuple[Array, IntArray]:
     """Points (N, 2) m along the cuts, machine frame, and the index of the cut that each is on, (N,)."""
-    points, owner = rings.flatten(Pack.of(cut.curve for cut in cuts), _FLATTENING)
-    cos, sin = np.cos(placement.rotation), np.sin(placement.rotation)
-    return points @ np.array([[cos, sin], [-sin, cos]]) + (placement.x, placement.y), owner
+    points, owner = rings.flatten(Pack.of(cut.curve for cut in cuts), FLATTENING)
+    return points @ _turn(placement.rotation).T + (placement.x, placement.y), owner
+
+
+def _fitting_place(part: Footprint, robot: Robot, placement: Placement, centre: Array) -> str:
+    """Where, or how turned, a part that leaves the sheet would lie on it; empty where nothing helps.
+
+    Args:
+        part: of the drawing.
+        robot: gives the sheet.
+        placement: with which it leaves the sheet.
+        centre: of the drawing's box, (2,) m in the sheet frame.
+    """
+    sheet, rotation = robot.workspace, placement.rotation
+    at = (_turn(rotation) @ centre) + (placement.x, placement.y)
+    moved = part.spot(sheet, part.places(sheet, rotation).centre, rotation)
+    if moved is not None:
+        return f"move it: --at {moved.x_mm},{moved.y_mm}, or --place auto"
+    turned = part.turned_spot(sheet, (float(at[0]), float(at[1])))
+    if turned is not None:
+        return f"turn it: --rotate {turned.turn_deg}, or --place auto"
+    both = part.turned_spot(sheet)
+    return "" if both is None else f"move and turn it: {both.options}, or --place auto"
+
+
+def _too_large(part: Footprint, robot: Robot) -> str:
+    """What to do about a part that fits nowhere."""
+    turn, excess = part.best_turn(robot.workspace)
+    how = "however it is turned" if robot.workspace.radius else f"best turned by {np.degrees(turn):.2f} deg"
+    least = f"at the best place it leaves the sheet by {to_mm(excess):.3f} mm, {how}"
+    return f"{least}: take a larger robot (--robot), or check the unit (--units)"
+
+
+def refuse_everywhere(part: Footprint, *, robot: Robot) -> None:
+    """Refuse a part that fits nowhere on the sheet, however it is turned.
+
+    Raises:
+        InfeasibleError: says by how much, and how it would have to be turned for that.
+    """
+    turn, excess = part.best_turn(robot.workspace)
+    if excess <= OUTSIDE:
+        return
+    how = "" if robot.workspace.radius else f", and that turned by {np.degrees(turn):.2f} deg"
+    least = f"at the best place it leaves the sheet by {to_mm(excess):.3f} mm{how}"
+    raise InfeasibleError(
+        f"the part fits nowhere on the sheet of robot {robot.name} ({_sheet(robot)}), however it is turned: {least}",
+        hint="take a larger robot (--robot), or check the unit of the drawing (--units)",
+    )
+
+
+def _turn(rotation: float) -> Array:
+    cos, sin = np.cos(rotation), np.sin(rotation)
+    return np.array([[cos, -sin], [sin, cos]])
 
 
 def _fitting_unit(points: Array, robot: Robot, drawn: Array, metres_per_unit: float) -> str:
@@ -97,11 +159,9 @@ def _fitting_unit(points: Array, robot: Robot, drawn: Array, metres_per_unit: fl
         metres_per_unit: that were used.
     """
     centre = (points.min(axis=0) + points.max(axis=0)) / 2.0
-    if robot.workspace.excess(points - centre).max() <= _OUTSIDE:
-        return ""  # it fits in another place
     for name in likely_units(*drawn):
         factor = METRES_PER[name] / metres_per_unit
-        fits = robot.workspace.excess(centre + factor * (points - centre)).max() <= _OUTSIDE
+        fits = robot.workspace.excess(centre + factor * (points - centre)).max() <= OUTSIDE
         if fits:
             width, depth = to_mm(METRES_PER[name]) * drawn
             size = f"in {name} it would be {width:.1f} x {depth:.1f} mm and fit"
@@ -117,7 +177,7 @@ def refuse_frame_outside(corners: Array, *, robot: Robot, placement: Placement) 
     """
     box = curves.transform(curves.polygon(corners), rotation=placement.rotation, shift=(placement.x, placement.y))
     excess = float(robot.workspace.excess(box.points).max())
-    if excess > _OUTSIDE:
+    if excess > OUTSIDE:
         raise InfeasibleError(
             f"a corner of the frame leaves the sheet of robot {robot.name} ({_sheet(robot)}) by {to_mm(excess):.3f} mm",
             hint="the part itself fits: use --dry-run, or move or turn it (--at, --rotate)",

@@ -80,6 +80,22 @@ def plan_motion(
         ProcessError: something is to be engraved, and the process does not say how.
         RobotError: a move leaves the reach.
     """
+    tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error, mode=mode)
+    return tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
+
+
+def moves_of(
+    cuts: Sequence[Cut], *, robot: Robot, process: Process, placement: Placement, drawing_error: float
+) -> tuple[list[tuple[Move, bool]], int]:
+    """The moves that `plan_motion` runs, each with whether it cuts or engraves, and for how many ticks it rests."""
+    tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error, mode=Mode.CUT)
+    return tape.moves()
+
+
+def _taped(
+    cuts: Sequence[Cut], *, robot: Robot, process: Process, placement: Placement, drawing_error: float, mode: Mode
+) -> _Tape:
+    """The tape of what `plan_motion` plans."""
     deviation = _left_for_corners(process.tolerance, drawing_error + (FIT_ALLOWANCE if process.kerf > 0.0 else 0.0))
     rapid = rapid_limits(robot)
     ways = {operation: _way(operation, robot, process) for operation in {cut.operation for cut in cuts}}
@@ -100,7 +116,7 @@ def plan_motion(
         tape.rest(BlockKind.RAPID, ticks=apart)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
-    return tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
+    return tape
 
 
 def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Placement) -> Setpoints:
@@ -248,6 +264,11 @@ class _Tape:
         """Run along ``path`` to its ``end``, (2,) m, from rest to rest."""
         self._steps.append(_Step(Move(path, limits, where), kind, power, cut))
         self.place = end
+
+    def moves(self) -> tuple[list[tuple[Move, bool]], int]:
+        """The moves, each with whether it belongs to a cut, and the ticks of all rests."""
+        moves = [(step.motion, step.cut is not None) for step in self._steps if isinstance(step.motion, Move)]
+        return moves, sum(step.motion.ticks for step in self._steps if isinstance(step.motion, _Rest))
 
     def setpoints(self, *, jobs: int | None, what_if: bool | None, progress: Callable[[int, int], None]) -> Setpoints:
         """Everything that was put on the tape, at every tick."""

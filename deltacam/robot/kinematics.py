@@ -66,7 +66,7 @@ def forward(geometry: DeltaGeometry, angles: npt.ArrayLike) -> Array:
     cos, sin = np.cos(q), np.sin(q)
     La, still = geometry.upper_arms, geometry.offsets
     elbows = geometry.centre + machine_vectors(geometry, still + La * cos, 0.0, -La * sin)
-    points, meets = _meeting_point(elbows, geometry.forearms, down=-geometry.up)
+    points, meets = meeting_point(elbows, geometry.forearms, down=-geometry.up)
     x, _, z = seen_from_arms(geometry, points)
     t = -(x * sin + z * cos)
     _refuse_angles(meets, q, "the forearms do not meet in one point")
@@ -228,8 +228,8 @@ def forearm_directions(geometry: DeltaGeometry, points: npt.ArrayLike) -> tuple[
     return forearm_vectors(geometry, arms) / geometry.forearms[:, np.newaxis], arms.t / geometry.forearms
 
 
-def _meeting_point(centres: Array, radii: Array, *, down: float) -> tuple[Array, BoolArray]:
-    """The point at ``radii`` (3,) from three ``centres`` (N, 3, 3), and whether there is one: (N, 3), (N,).
+def meeting_point(centres: Array, radii: Array, *, down: float) -> tuple[Array, BoolArray]:
+    """The point at ``radii``, (3,) or (N, 3), from three ``centres`` (N, 3, 3), and whether it exists: (N, 3), (N,).
 
     Of the two, the one on the side of z that ``down``, 1 or -1, points to. With the first centre as origin, the point p
     has 2 a.p = |a|^2 + r1^2 - r2^2 and 2 b.p = |b|^2 + r1^2 - r3^2, and the rest of it is along the normal a x b.
@@ -240,10 +240,10 @@ def _meeting_point(centres: Array, radii: Array, *, down: float) -> tuple[Array,
     largest = radii.max()
     plane = (area > (ROUNDING * largest**2) ** 2) & (normal[:, 2] ** 2 > ROUNDING * area)
     area = np.where(plane, area, 1.0)
-    to_a = np.einsum("ij,ij->i", a, a) + (radii[0] ** 2 - radii[1] ** 2)
-    to_b = np.einsum("ij,ij->i", b, b) + (radii[0] ** 2 - radii[2] ** 2)
+    to_a = np.einsum("ij,ij->i", a, a) + (radii[..., 0] ** 2 - radii[..., 1] ** 2)
+    to_b = np.einsum("ij,ij->i", b, b) + (radii[..., 0] ** 2 - radii[..., 2] ** 2)
     in_plane = np.cross(to_a[:, np.newaxis] * b - to_b[:, np.newaxis] * a, normal) / (2.0 * area)[:, np.newaxis]
-    square = radii[0] ** 2 - np.einsum("ij,ij->i", in_plane, in_plane)
+    square = radii[..., 0] ** 2 - np.einsum("ij,ij->i", in_plane, in_plane)
     along = down * np.sign(normal[:, 2]) * np.sqrt(np.maximum(square, 0.0) / area)
     return centres[:, 0] + in_plane + along[:, np.newaxis] * normal, plane & (square >= -ROUNDING * largest**2)
 

@@ -1,11 +1,12 @@
-"""How well a pose passes on force and motion: pressure angles, forearm swing, condition number."""
+"""How well a pose passes on force, motion and error: pressure angles, swing, condition number, error at the tool."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
-from deltacam.model import Array
+from deltacam.model import Array, BoolArray
+from deltacam.robot.arms import SINGULAR, forearm_vectors, solve
 from deltacam.robot.dimensions import DeltaGeometry
 from deltacam.robot.kinematics import forearm_directions, inverse_jacobian
 
@@ -72,3 +73,57 @@ def inverse_condition(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
     """
     values = np.linalg.svd(inverse_jacobian(geometry, points), compute_uv=False)
     return np.asarray(values[:, -1] / values[:, 0])
+
+
+def tool_error_per_joint_error(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """How far the tool moves, at most, where the three joints turn by small angles whose squares add up to one.
+
+    It is the largest singular value of the Jacobian dP/dq (Merlet 2006, "Parallel robots", on accuracy).
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the machine frame, m.
+
+    Returns:
+        (N,) m/rad; inf where the forearms do not hold the effector.
+
+    Raises:
+        RobotError: a point is not finite or out of reach.
+        ValueError: the shape is not (N, 3).
+    """
+    return _largest_gain(_jacobian(geometry, points))
+
+
+def tool_error_per_joint_error_in_plane(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """As `tool_error_per_joint_error`, of x and y of the tool alone: what changes the size of a part.
+
+    Args:
+        geometry: the robot.
+        points: (N, 3) in the machine frame, m.
+
+    Returns:
+        (N,) m/rad; inf where the forearms do not hold the effector.
+
+    Raises:
+        RobotError: a point is not finite or out of reach.
+        ValueError: the shape is not (N, 3).
+    """
+    return _largest_gain(_jacobian(geometry, points)[:, :2])
+
+
+def _jacobian(geometry: DeltaGeometry, points: npt.ArrayLike) -> Array:
+    """dP/dq from S_i.dP = (S_i.b_i) dq_i: (N, 3, 3) m/rad, one column per joint; nan where the S_i lie in a plane."""
+    arms = solve(geometry, points)
+    forearms = forearm_vectors(geometry, arms)
+    lengths = np.linalg.norm(forearms, axis=2)
+    volume = np.linalg.det(forearms / lengths[:, :, np.newaxis])
+    held = (np.abs(volume) > SINGULAR).reshape(-1, 1, 1)
+    drive = geometry.upper_arms * arms.t
+    return np.where(held, np.linalg.inv(np.where(held, forearms, np.eye(3))) * drive[:, np.newaxis], np.nan)
+
+
+def _largest_gain(matrices: Array) -> Array:
+    """The largest singular values of ``matrices`` (N, M, 3): (N,), inf for those that hold nan."""
+    known: BoolArray = np.asarray(np.isfinite(matrices).all(axis=(1, 2)))
+    values = np.linalg.svd(np.where(known.reshape(-1, 1, 1), matrices, 0.0), compute_uv=False)
+    return np.where(known, values[:, 0], np.inf)

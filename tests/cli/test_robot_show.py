@@ -49,6 +49,6 @@ def test_a_page_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
     page = tmp_path / "robot.html"
     assert f"wrote {page}" in run("delta-300", "--html", str(page))
     assert page.read_text().count('class="chart"') == 4
-    with pytest.raises(DeltacamError, match="robot.html") as refused:
+    with pytest.raises(DeltacamError, match=r"robot\.html") as refused:
         run("delta-300", "--html", str(tmp_path / "missing" / "robot.html"))
     assert "--html" in refused.value.hint

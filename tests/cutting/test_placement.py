@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deltacam.cutting.kerf import offset
-from deltacam.cutting.placement import bounding_box, place, refuse_outside
+from deltacam.cutting.placement import bounding_box, footprint, place, refuse_everywhere, refuse_outside
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.robot.reader import load_robot
@@ -35,21 +35,22 @@ def test_a_part_that_leaves_the_sheet_is_refused_by_how_much_and_which() -> None
     part = contour(rectangle(0.29, 0.02), number=4)
     cuts = offset([part], kerf=0.0).cuts
     fits = place([part], robot=ROBOT, at=(0.0, 0.0), rotation=0.0)
-    refuse_outside(cuts, robot=ROBOT, placement=fits, unit="mm", metres_per_unit=1e-3)
+    refuse_outside(cuts, contours=[part], robot=ROBOT, placement=fits, unit="mm", metres_per_unit=1e-3)
     aside = place([part], robot=ROBOT, at=(0.01, 0.0), rotation=0.0)
     with pytest.raises(InfeasibleError) as caught:
-        refuse_outside(cuts, robot=ROBOT, placement=aside, unit="mm", metres_per_unit=1e-3)
+        refuse_outside(cuts, contours=[part], robot=ROBOT, placement=aside, unit="mm", metres_per_unit=1e-3)
     assert "5.000 mm" in caught.value.what
     assert "contour 4" in caught.value.where
-    assert "--at" in caught.value.hint
+    assert "move it: --at 0,0, or --place auto" in caught.value.hint
 
 
 def hint(width: float, height: float, metres: float, *, at: tuple[float, float] = (0.0, 0.0)) -> str:
     """What to do about a part of so many units that leaves the sheet."""
     part = contour(rectangle(width * metres, height * metres, at=(5.0, -3.0)))
     where = place([part], robot=ROBOT, at=at, rotation=0.3)
+    cuts = offset([part], kerf=0.0).cuts
     with pytest.raises(InfeasibleError) as caught:
-        refuse_outside(offset([part], kerf=0.0).cuts, robot=ROBOT, placement=where, unit="x", metres_per_unit=metres)
+        refuse_outside(cuts, contours=[part], robot=ROBOT, placement=where, unit="x", metres_per_unit=metres)
     return caught.value.hint
 
 
@@ -68,15 +69,26 @@ def test_a_part_that_would_fit_in_another_unit_is_refused_with_that_unit(
 
 
 @pytest.mark.parametrize(
-    ("width", "height", "metres", "at"),
+    ("width", "height", "metres", "at", "says"),
     [
-        (500.0, 300.0, 1e-3, (0.0, 0.0)),  # only smaller units than mm would do
-        (1.0, 1000.0, 25.4e-3, (0.0, 0.0)),  # does not fit in mm either
-        (10.0, 4.0, 25.4e-3, (0.1, 0.0)),  # the place is wrong, not the size
+        (500.0, 300.0, 1e-3, (0.0, 0.0), "leaves the sheet by 100.000 mm"),  # only smaller units than mm would do
+        (1.0, 1000.0, 25.4e-3, (0.0, 0.0), "take a larger robot (--robot)"),  # does not fit in mm either
+        (10.0, 4.0, 25.4e-3, (0.1, 0.0), "move it: --at 0,0"),  # the place is wrong, not the size
+        (400.0, 1.0, 1e-3, (0.0, 0.0), "turn it: --rotate 45"),
+        (400.0, 1.0, 1e-3, (0.05, 0.0), "move and turn it: --at 0,0 --rotate 45"),
     ],
 )
-def test_no_unit_is_named_that_does_not_help(
-    width: float, height: float, metres: float, at: tuple[float, float]
+def test_what_helps_is_said_and_no_unit_that_does_not(
+    width: float, height: float, metres: float, at: tuple[float, float], says: str
 ) -> None:
     assert "and fit" not in hint(width, height, metres, at=at)
-    assert "move it (--at)" in hint(width, height, metres, at=at)
+    assert says in hint(width, height, metres, at=at)
+
+
+def test_a_part_that_fits_nowhere_is_refused_by_how_much_and_how_turned() -> None:
+    part = contour(rectangle(0.5, 0.01))
+    with pytest.raises(InfeasibleError) as caught:
+        refuse_everywhere(footprint(offset([part], kerf=0.0).cuts, [part]), robot=ROBOT)
+    least = (0.5 + 0.01) * math.sqrt(0.5) / 2.0 - 0.15  # on a square sheet a rectangle is best at 45 degrees
+    assert f"by {least * 1e3:.3f} mm" in caught.value.what
+    assert "turned by 45.00 deg" in caught.value.what or "turned by 135.00 deg" in caught.value.what

@@ -124,6 +124,61 @@ def test_inverse_undoes_forward_where_forward_answers(angles_deg: list[float], g
     assert np.abs(kinematics.inverse(geometry, points) - angles).max() < 1e-12 * max(1.0, sensitivity) ** 2
 
 
+@given(st.lists(st.floats(0.0, 1.0), min_size=3, max_size=3), robots)
+def test_inverse_undoes_forward_within_the_joint_range_of_every_robot(shares: list[float], robot: Robot) -> None:
+    """Over the whole reach of the joints, not only over the sheet."""
+    low, high = np.array(robot.joints.min), np.array(robot.joints.max)
+    angles = (low + np.array(shares) * (high - low))[np.newaxis]
+    try:
+        points = robot.forward(angles)
+        sensitivity = np.abs(robot.inverse_jacobian(points)).max()
+    except RobotError:
+        return
+    assert np.abs(robot.inverse(points) - angles).max() < 1e-12 * max(1.0, sensitivity) ** 2
+
+
+@given(st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3), robots)
+def test_forward_undoes_inverse_wherever_every_robot_reaches(shares: list[float], robot: Robot) -> None:
+    """In a box about the whole region. The forearms meet in two points, and `forward` gives the lower one."""
+    length = float(np.max(robot.geometry.upper_arms + robot.geometry.forearms))
+    point = length * np.array([[shares[0], shares[1], -abs(shares[2])]])
+    try:
+        angles = robot.inverse(point)
+        found = robot.forward(angles)
+        singular = max(mu.max() for mu in robot.pressure_angles(found)) > np.radians(89.0)
+    except RobotError:
+        return
+    assume(not singular)
+    assert np.abs(robot.inverse(found) - angles).max() < 1e-10
+    assert np.abs(found - point).max() < 1e-10 or found[0, 2] < point[0, 2]
+
+
+def complex_inverse(robot: Robot, points: Array) -> Array:
+    """The inverse kinematics for complex points: for derivatives by a complex step, which lose no digits."""
+    geometry, columns = robot.geometry, []
+    arms = zip(geometry.azimuths, geometry.offsets, geometry.upper_arms, geometry.forearms, strict=True)
+    for azimuth, offset, upper, forearm in arms:
+        x = points[:, 0] * np.cos(azimuth) + points[:, 1] * np.sin(azimuth) - offset
+        y, z = points[:, 1] * np.cos(azimuth) - points[:, 0] * np.sin(azimuth), points[:, 2]
+        k = (x * x + y * y + z * z + upper**2 - forearm**2) / (2 * upper)
+        t = np.sqrt(x * x + z * z - k * k)
+        columns.append((np.log((x * k - z * t) - 1j * (z * k + x * t)) - np.log(x * x + z * z)) / 1j)
+    return np.stack(columns, axis=-1)
+
+
+@given(robots.flatmap(lambda robot: st.tuples(st.just(robot), points_on(robot))))
+def test_the_inverse_jacobian_is_the_complex_step_of_the_inverse(case: tuple[Robot, Array]) -> None:
+    robot, points = case
+    assert np.abs(complex_inverse(robot, points).real - robot.inverse(points)).max() < 1e-12
+    J = robot.inverse_jacobian(points)
+    for axis in range(3):
+        # The inverse is analytic but its values are real parts: its complex derivative is taken along a circle.
+        step = 1e-5 * np.eye(3)[axis]
+        turns = np.exp(2j * np.pi * np.arange(8) / 8)
+        around = [complex_inverse(robot, points + turn * step) / turn for turn in turns]
+        assert np.abs(np.mean(around, axis=0) / 1e-5 - J[:, :, axis]).max() < 1e-8 * np.abs(J).max()
+
+
 def test_forward_refuses_angles_that_no_point_has() -> None:
     cases = {
         "the forearms do not meet": (170.0, 20.0, 20.0),

@@ -70,6 +70,12 @@ def test_the_condition_number_of_the_built_in_robots_is_as_published_in_their_fi
     worst = {robot.name: 1.0 / robot.inverse_condition(robot.workspace.grid()).min() for robot in ROBOTS}
     assert worst["delta-300"] == pytest.approx(2.37, abs=0.01)
     assert worst["irb360-1600"] == pytest.approx(2.81, abs=0.01)
+    assert worst["irb360-1130"] == pytest.approx(2.79, abs=0.01)
+    assert worst["delta-x-s-d600"] == pytest.approx(2.79, abs=0.01)
+    assert worst["dr3ib-8l"] == pytest.approx(2.78, abs=0.01)
+    assert worst["rl5-1450"] == pytest.approx(2.74, abs=0.01)
+    assert worst["tutorial-112"] == pytest.approx(1.40, abs=0.01)
+    assert len(worst) == 7
 
 
 def test_pressure_angles_are_90_degrees_at_the_singularities() -> None:
@@ -77,3 +83,27 @@ def test_pressure_angles_are_90_degrees_at_the_singularities() -> None:
     mu1, mu2 = measures.pressure_angles(stretched, [[0.0, 0.0, -1.0]])
     assert np.degrees(mu1) == pytest.approx(np.full((1, 3), 90.0), abs=1e-4)
     assert np.degrees(mu2) == pytest.approx(np.full((1, 3), 90.0))  # the forearms are parallel as well
+
+
+@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
+def test_the_tool_error_is_the_farthest_that_the_tool_moves_for_joint_errors_of_norm_one(robot: Robot) -> None:
+    points, rng, size = robot.workspace.grid(5), np.random.default_rng(1), 1e-6
+    errors = rng.normal(size=(3000, 3))
+    errors *= size / np.linalg.norm(errors, axis=1)[:, np.newaxis]
+    q = robot.inverse(points)
+    moved = np.stack([robot.forward(q + error) - points for error in errors]) / size
+    in_space, in_plane = np.linalg.norm(moved, axis=2).max(axis=0), np.linalg.norm(moved[:, :, :2], axis=2).max(axis=0)
+    found = measures.tool_error_per_joint_error(robot.geometry, points)
+    found_in_plane = measures.tool_error_per_joint_error_in_plane(robot.geometry, points)
+    assert in_space == pytest.approx(found, rel=2e-3)
+    assert in_plane == pytest.approx(found_in_plane, rel=2e-3)
+    assert (found_in_plane <= found * (1 + 1e-12)).all()
+
+
+def test_the_tool_error_is_infinite_where_the_forearms_are_parallel_and_zero_where_the_arms_are_stretched() -> None:
+    parallel = DeltaGeometry(0.1, 0.1, 0.3, 0.7)
+    assert measures.tool_error_per_joint_error(parallel, [[0.0, 0.0, -1.0]]) == pytest.approx([np.inf])
+    assert measures.tool_error_per_joint_error_in_plane(parallel, [[0.0, 0.0, -1.0]]) == pytest.approx([np.inf])
+    stretched = DeltaGeometry(0.13, 0.035, 0.3, 0.7)
+    lowest = [[0.0, 0.0, -np.sqrt(1.0 - 0.095**2)]]
+    assert measures.tool_error_per_joint_error(stretched, lowest) == pytest.approx([0.0], abs=1e-6)

@@ -37,7 +37,15 @@ def write(tmp_path: Path) -> Write:
 
 
 def test_every_built_in_robot_loads_under_its_file_name() -> None:
-    assert profile_names() == ("delta-300", "irb360-1600")
+    assert profile_names() == (
+        "delta-300",
+        "delta-x-s-d600",
+        "dr3ib-8l",
+        "irb360-1130",
+        "irb360-1600",
+        "rl5-1450",
+        "tutorial-112",
+    )
     assert [load_robot(name).name for name in profile_names()] == list(profile_names())
     assert all(load_robot(name).source for name in profile_names())
 
@@ -134,7 +142,9 @@ def test_a_file_of_any_ending_is_read(write: Write, tmp_path: Path) -> None:
 def test_an_unknown_name_lists_the_robots_and_names_the_nearest() -> None:
     with pytest.raises(RobotError, match="unknown robot 'delta300'") as caught:
         load_robot("delta300")
-    assert caught.value.hint == "did you mean 'delta-300'? built-in: delta-300, irb360-1600; or give a .toml file"
+    assert caught.value.hint == (
+        f"did you mean 'delta-300'? built-in: {', '.join(profile_names())}; or give a .toml file"
+    )
 
 
 def test_a_missing_file_is_named() -> None:

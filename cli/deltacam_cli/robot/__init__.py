@@ -9,8 +9,11 @@ import click
 from deltacam_cli.main import LateGroup
 
 COMMANDS: Final = {
+    "compare": "Compare robots, side by side for DRAWING.",
+    "budget": "Show how exactly ROBOT can cut.",
     "show": "Show what ROBOT can do over its sheet.",
     "design": "Find the smallest robot for a prescribed workspace.",
+    "place": "Find where on the sheet DRAWING is cut fastest and most accurately.",
 }
 """The commands and their short help; a command ``x`` is ``deltacam_cli.robot.x:command``."""
 

@@ -63,6 +63,8 @@ def command(*, html: Path | None, as_json: bool, **given: Any) -> None:
     output = given["output"]
     if given["pareto"] and output is not None:
         raise click.UsageError("--pareto finds several robots; write one with --condition and -o")
+    if output is not None and output.suffix.lower() != ".toml":
+        raise DeltacamError(f"{str(output)!r} is not the name of a robot file", where="-o", hint="end it in .toml")
     wish = _wish(given)
     with ProgressLine() as progress:
         if given["pareto"]:
@@ -159,6 +161,4 @@ def _write(design: Design, output: Path, sheet_z: float | None) -> None:
     from deltacam.robot.synthesis.machine import machine
     from deltacam.robot.writer import to_toml
 
-    if output.suffix.lower() != ".toml":
-        raise DeltacamError(f"{str(output)!r} is not the name of a robot file", where="-o", hint="end it in .toml")
     write_whole(output, to_toml(machine(design, name=output.stem, sheet_z=sheet_z)).encode())

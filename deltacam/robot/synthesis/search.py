@@ -107,7 +107,7 @@ def search(problem: Problem, *, seed: int, progress: Progress | None = None, sta
         updating="deferred",
         callback=count,
     )
-    return decode(found.x[np.newaxis])[0]
+    return np.asarray(decode(found.x[np.newaxis])[0])
 
 
 def decode(unknowns: Array) -> Array:

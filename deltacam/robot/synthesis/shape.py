@@ -106,7 +106,7 @@ class CylinderShape:
 def surface(count: int) -> Array:
     """Points of the unit cube whose images cover the surface of a workspace and its mirror planes, (N, 3)."""
     cube = grid(count)
-    return cube[(np.abs(cube - 0.5) == 0.5).any(axis=1)]
+    return np.asarray(cube[(np.abs(cube - 0.5) == 0.5).any(axis=1)])
 
 
 def grid(count: int) -> Array:

@@ -15,7 +15,7 @@ POINTS = RNG.uniform(-0.08, 0.08, (400, 3))
 
 def machine(row: Array) -> tuple[DeltaGeometry, Array]:
     offset, La, Lb, middle = row
-    return DeltaGeometry(0.1 + offset, 0.1, La, Lb), POINTS + [0.0, 0.0, middle]
+    return DeltaGeometry(0.1 + offset, 0.1, La, Lb), POINTS + np.array([0.0, 0.0, middle])
 
 
 @pytest.mark.parametrize("number", range(len(ROBOTS)))
@@ -44,7 +44,7 @@ def test_the_batched_measures_are_those_of_the_robot(number: int) -> None:
 
 
 def test_poses_out_of_reach_are_finite_and_say_how_far() -> None:
-    far = POINTS + [0.0, 0.0, -2.0]
+    far = POINTS + np.array([0.0, 0.0, -2.0])
     at = kernel.poses(ROBOTS, far)
     smallest, largest = kernel.singular_values(at, kernel.forearm_cosines(at))
     assert (at.reach.min(axis=0) < -0.5).all()
