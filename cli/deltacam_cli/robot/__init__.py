@@ -13,6 +13,7 @@ COMMANDS: Final = {
     "workspace": "Show where ROBOT can work, and the largest cylinder and box that it can use.",
     "place": "Find where on the sheet DRAWING is cut fastest and most accurately.",
     "budget": "Show how exactly ROBOT can cut.",
+    "design": "Find the smallest robot for a prescribed workspace.",
     "compare": "Compare robots, side by side for DRAWING.",
     "import": "Make a robot file from the FILE of another program.",
 }
