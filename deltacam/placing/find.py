@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple, get_args
 import numpy as np
 
 from deltacam.cutting.fitting import Footprint, Spot
+from deltacam.errors import InfeasibleError
 from deltacam.model import Array
 from deltacam.placing.estimate import Estimate, estimate
 from deltacam.placing.sampled import Sampled
@@ -135,6 +136,9 @@ def find(task: Task, *, by: By = "both", progress: Callable[[int, int], None] = 
         task: the part; it fits somewhere.
         by: what is to be small.
         progress: is told how many places are estimated or planned, and of how many.
+
+    Raises:
+        InfeasibleError: the part fits so barely that no place can be typed.
     """
     part, sheet = task.part, task.robot.workspace
     search, trials = _Search.of(task, by)
@@ -153,6 +157,9 @@ def find(task: Task, *, by: By = "both", progress: Callable[[int, int], None] = 
         about_it = search.estimate(np.array([spot.at]), np.array([spot.rotation]))
         worst, rms = float(about_it.worst[0]), float(about_it.rms[0])
         planned.append(Candidate(spot, task.duration(spot.at, spot.rotation), worst, rms))
+    if not planned:
+        what = "the part fits the sheet too barely to be placed with numbers of six decimals"
+        raise InfeasibleError(what, hint="take a larger robot (--robot)")
     times, errors = np.array([one.time for one in planned]), np.array([one.worst for one in planned])
     order = np.argsort(search.score(times, errors, (planned[0].time, planned[0].worst)), kind="stable")
     best = tuple(planned[k] for k in order.tolist())
