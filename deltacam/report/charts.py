@@ -55,7 +55,7 @@ def heat_map(
     corners = np.array([[x_mm.min(), y_mm.min()], [x_mm.max(), y_mm.max()]])
     seen = np.vstack([corners, *outlines])
     places = np.stack([seen.min(axis=0), seen.max(axis=0)])
-    drawn = [lines([outline], palette.LINE, width=1.6) | {"hoverinfo": "skip"} for outline in outlines]
+    drawn = [lines([outline], palette.STRONG, width=1.6) | {"hoverinfo": "skip"} for outline in outlines]
     return Chart(heading, caption, (field, *drawn, *_marks(marks)), _of_map(places, axes))
 
 

@@ -15,7 +15,7 @@ from deltacam.report.picture import shown
 from deltacam.report.tables import table
 
 _LONGEST: Final = 400  # characters of a cell or a name on a terminal; a file may hold a name of any length
-_STYLE: Final = ".chart{height:34rem}figure.study{margin:0 0 2rem}figure.study figcaption{max-width:60rem}"
+_STYLE: Final = ".chart{height:34rem}figure.study{margin:0 0 2rem}figure.study h2{margin-top:0}figure.study figcaption{max-width:60rem}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,8 @@ def to_html(study: Study, *, library: str | None = None) -> str:
         study: everything in it is escaped.
         library: where a copy of `page.plotly_js` lies, relative to the page; None puts it into the page, 4.8 MB.
     """
-    facts = table(("fact", "value"), [(shown(name), shown(value)) for name, value in study.facts])
+    rows = [(shown(name), shown(value)) for name, value in study.facts]
+    facts = table(("fact", "value"), rows) if rows else ""
     tables = "".join(f"<section><h2>{shown(one.heading)}</h2>{_html_table(one)}</section>\n" for one in study.tables)
     charts = "".join(
         f'<figure class="study inked"><h2>{shown(chart.heading)}</h2><div class="chart" id="chart{number}"></div>'
