@@ -15,7 +15,10 @@ from deltacam.report.picture import shown
 from deltacam.report.tables import table
 
 _LONGEST: Final = 400  # characters of a cell or a name on a terminal; a file may hold a name of any length
-_STYLE: Final = ".chart{height:34rem}figure.study{margin:0 0 2rem}figure.study h2{margin-top:0}figure.study figcaption{max-width:60rem}"
+_STYLE: Final = (
+    ".chart{height:34rem}figure.study{margin:0 0 2rem}figure.study h2{margin-top:0}"
+    "figure.study figcaption{max-width:60rem}"
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -118,7 +118,13 @@ def _joint_min(limit: float) -> Demand:
         return np.asarray(limit - view.angles.min(axis=0))
 
     return Demand(
-        "joint_min_deg", "joint angle", "deg", math.degrees(limit), True, excess, lambda e: math.degrees(limit - e)
+        "joint_min_deg",
+        "smallest joint angle",
+        "deg",
+        math.degrees(limit),
+        True,
+        excess,
+        lambda e: math.degrees(limit - e),
     )
 
 
@@ -127,7 +133,13 @@ def _joint_max(limit: float) -> Demand:
         return np.asarray(view.angles.max(axis=0) - limit)
 
     return Demand(
-        "joint_max_deg", "joint angle", "deg", math.degrees(limit), False, excess, lambda e: math.degrees(limit + e)
+        "joint_max_deg",
+        "largest joint angle",
+        "deg",
+        math.degrees(limit),
+        False,
+        excess,
+        lambda e: math.degrees(limit + e),
     )
 
 
