@@ -16,12 +16,12 @@ from deltacam.robot.producers import GRADES
 from deltacam.robot.reader import profile_names
 from deltacam_cli.main import cli
 
-GEAR = Path(__file__).parents[1] / "samples" / "gear.dxf"
+PART = Path(__file__).parents[1] / "samples" / "bracket.dxf"
 
 
 def test_a_robot_has_the_time_and_the_verdict_that_planning_gives() -> None:
-    (found,) = comparing.compare(GEAR, ["delta-300"])
-    planned = plan(GEAR, robot="delta-300")
+    (found,) = comparing.compare(PART, ["delta-300"])
+    planned = plan(PART, robot="delta-300")
     assert (found.fits, found.passed, found.reason, found.rotation) == (True, True, "", 0.0)
     assert found.duration == planned.program.duration
     times = planned.report.summary["time_s"]
@@ -32,7 +32,7 @@ def test_a_robot_has_the_time_and_the_verdict_that_planning_gives() -> None:
 def test_a_robot_that_cannot_be_read_or_is_too_small_is_a_row_with_its_reason(tmp_path: Path) -> None:
     bad = tmp_path / "bad.toml"
     bad.write_text("name = 1", encoding="utf-8")
-    broken, small, good = comparing.compare(GEAR, [bad, _small(tmp_path), "delta-300"])
+    broken, small, good = comparing.compare(PART, [bad, _small(tmp_path), "delta-300"])
     assert not broken.fits
     assert "name" in broken.reason
     assert (small.fits, small.passed, small.duration) == (False, False, None)
@@ -80,7 +80,7 @@ def test_the_command_lists_robots_and_compares_them(tmp_path: Path) -> None:
     assert {one["grade"] for one in found["producers"]} <= set(GRADES)
     missing = next(one for one in found["producers"] if one["model"] == "RL3-600")
     assert missing["si"]["repeatability"] is None
-    arguments = ["robot", "compare", str(GEAR), "--robot", "delta-300", "--robot", "nosuch", "--html", str(page)]
+    arguments = ["robot", "compare", str(PART), "--robot", "delta-300", "--robot", "nosuch", "--html", str(page)]
     shown = CliRunner().invoke(cli, arguments)
     assert shown.exit_code == 0, shown.output
     assert "nosuch: unknown robot" in shown.output

@@ -27,7 +27,12 @@ def margins(geometry: DeltaGeometry, requirements: Requirements, points: Array) 
         (N, K), one column per name of ``requirements``: the reach margin as a part of the upper arm, angles in rad, the
         inverse condition number as it is. The worst arm counts. Out of reach all but the first are nan.
     """
-    bounds = pose_bounds(geometry, points, np.zeros(3))
+    wanted = requirements.min_inverse_condition is not None
+    return margins_of(requirements, pose_bounds(geometry, points, np.zeros(3), conditioned=wanted))
+
+
+def margins_of(requirements: Requirements, bounds: PoseBounds) -> Array:
+    """The `margins` of points whose ``bounds`` are known."""
     found = np.array(_against(requirements, bounds).at)
     out = (found[:, 0] <= 0.0) | (bounds.along.at <= 0.0).any(axis=1)
     found[out, 1:] = np.nan

@@ -66,7 +66,7 @@ class PoseBounds:
         along: cos mu1 = t / Lb, (N, 3).
         aside: |y| / Lb, the sine of the forearm's swing, (N, 3).
         mu2: (N, 3) rad, 0 to pi; above pi/2 on the other side of the parallel singularity.
-        inverse_condition: (N,), 0 to 1.
+        inverse_condition: (N,), 0 to 1; nan where it was left out.
     """
 
     reach: Interval
@@ -78,10 +78,11 @@ class PoseBounds:
     inverse_condition: Interval
 
 
-def pose_bounds(geometry: DeltaGeometry, centres: Array, half: Array) -> PoseBounds:
+def pose_bounds(geometry: DeltaGeometry, centres: Array, half: Array, *, conditioned: bool = True) -> PoseBounds:
     """What the poses of cells about ``centres`` (N, 3) m with half sides ``half`` (3,) m are like.
 
-    With half sides of 0 every interval is the value at the point. Points out of reach are allowed.
+    With half sides of 0 every interval is the value at the point, and the condition number may be left out: it is half
+    of the work. Points out of reach are allowed.
     """
     cells = _Cells.of(geometry, centres, half)
     La, Lb, x, y, z, k = geometry.upper_arms, geometry.forearms, cells.x, cells.y, cells.z, cells.k
@@ -98,7 +99,10 @@ def pose_bounds(geometry: DeltaGeometry, centres: Array, half: Array) -> PoseBou
     turn = np.abs(gradients) @ cells.half + 0.5 * bend * cells.rho**2
     aside, shift = np.abs(y), cells.span(np.zeros_like(x), 1.0, np.zeros_like(x))
     mu2 = _mu2(geometry, forearms / Lb[:, np.newaxis], cells.rho / floor)
-    condition = _inverse_condition(gradients, np.linalg.norm(bend, axis=1) * cells.rho)
+    if conditioned or cells.rho > 0.0:
+        condition = _inverse_condition(gradients, np.linalg.norm(bend, axis=1) * cells.rho)
+    else:
+        condition = Interval(*np.full((3, len(centres)), np.nan))
     if cells.rho > 0.0:
         third = cells.third_derivative(floor, bend)
         sharp = _sharpen(geometry, arms, gradients, third, half, steady & (condition.at > _SINGULAR))

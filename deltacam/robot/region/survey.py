@@ -10,7 +10,7 @@ import numpy as np
 from deltacam.model import Array, BoolArray
 from deltacam.robot.dimensions import DeltaGeometry
 from deltacam.robot.kinematics import inverse_jacobian
-from deltacam.robot.region.margins import margins
+from deltacam.robot.region.margins import margins_of
 from deltacam.robot.region.pose_bounds import pose_bounds
 from deltacam.robot.region.requirements import Requirements
 
@@ -49,8 +49,8 @@ class Poses:
 
 def poses_at(geometry: DeltaGeometry, requirements: Requirements, points: Array) -> Poses:
     """What the poses at ``points`` (N, 3) m are like; the points may be out of reach."""
-    found = margins(geometry, requirements, points)
     bounds = pose_bounds(geometry, points, np.zeros(3))
+    found = margins_of(requirements, bounds)
     reached = ~np.isnan(found[:, 1])
 
     def known(values: Array) -> Array:
