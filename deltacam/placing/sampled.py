@@ -36,7 +36,7 @@ class Sampled:
         width: (I,) how long it is, as a share of the segment.
         works: (I,) whether the laser is on there.
         ends: (2, 2) m, where the first way from the park position ends, and where the last one begins.
-        park: (2,) m, the park position, in the base frame.
+        park: (2,) m, the park position, in the machine frame.
         resting: s, the time at rest.
     """
 
