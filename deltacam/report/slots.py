@@ -23,8 +23,8 @@ def slots(data: Json) -> str:
 <figcaption>Scroll to zoom, drag to move, double-click for all. {_path(data)}</figcaption></figure>
 <figure class="moving"><div class="bar"><h3>The machine from above</h3></div>
 <div class="plot inked" id="workspace" role="img" aria-label="The sheet, the part and the arms from above"></div>
-<figcaption>The sheet, the part with its bounding box, the joints (squares) on the base, park (cross), in mm from the
-centre of the base. Thin lines: the pressure angle in degrees.</figcaption></figure>
+<figcaption>The sheet, the part with its bounding box, the joints (squares) on the base, park (cross), in mm in the
+machine frame. Thin lines: the pressure angle in degrees.</figcaption></figure>
 </div>
 <figure class="moving"><div class="bar"><h3>Motion</h3>{_legend()}</div>
 <div class="plot inked" id="motion" role="img" aria-label="Tool and joints over time, with their limits"></div>
