@@ -324,7 +324,7 @@ def test_path_derivatives_are_the_differences_of_inverse_along_a_path(robot: Rob
     second = np.array([2, -27, 270, -490, 270, -27, 2]) / 180.0
     assert np.array_equal(q, near[3])
     assert np.abs(np.tensordot(first, near, 1) / h - dq).max() < 1e-9 * np.abs(dq).max()
-    assert np.abs(np.tensordot(second, near, 1) / h**2 - ddq).max() < 1e-7 * np.abs(ddq).max()
+    assert np.abs(np.tensordot(second, near, 1) / h**2 - ddq).max() < 1e-8 * np.abs(ddq).max()
 
 
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=lambda robot: robot.name)
