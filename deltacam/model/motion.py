@@ -11,7 +11,7 @@ from deltacam.model.drawing import Operation
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """Where the sheet frame lies in the machine frame: base xy = Rz(rotation) * sheet xy + (x, y), at height z."""
+    """Where the sheet frame lies in the machine frame: machine xy = Rz(rotation) * sheet xy + (x, y), at height z."""
 
     x: float
     y: float

@@ -6,6 +6,7 @@ import pytest
 
 from deltacam.program.program import Program
 from deltacam.report import difference as report
+from deltacam.robot.dimensions import Mount
 from deltacam.verification.difference import Difference, difference
 from deltacam.verification.verify import verify
 from tests.bench import Bench
@@ -47,6 +48,16 @@ def test_settings_are_named_with_both_values(bench: Bench, program: Program) -> 
         "process.feed": (program.process.feed, 0.2),
         "robot.geometry.forearm": (program.robot.geometry.forearm, 0.71),
     }
+
+
+@pytest.mark.parametrize("mounted_first", [True, False])
+def test_a_base_that_is_mounted_in_one_of_them_is_said(bench: Bench, program: Program, mounted_first: bool) -> None:
+    geometry = replace(program.robot.geometry, mount=Mount(rotation=1e-3))
+    mounted = replace(program, robot=replace(program.robot, geometry=geometry))
+    pair = (mounted, program) if mounted_first else (program, mounted)
+    shown = between(bench, *pair).settings["robot.geometry.mount"]
+    assert shown[mounted_first] is None
+    assert shown[not mounted_first]["rotation"] == 1e-3
 
 
 def test_another_order_and_a_missing_contour_are_said(bench: Bench, program: Program) -> None:
