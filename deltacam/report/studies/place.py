@@ -41,7 +41,7 @@ def _facts(found: Found, drawing: str) -> tuple[tuple[str, str], ...]:
         ("best place", f"x {best.spot.x_mm} y {best.spot.y_mm} mm, turned by {best.spot.turn_deg} deg"),
         ("time", f"{best.time:.3f} s{_instead(found, 'time')}"),
         ("tool error", f"up to {_error(best.worst)} um per mrad of the joints{_instead(found, 'worst')}"),
-        ("to plan there", f"deltacam plan {drawing} {best.spot.options}"),
+        ("to plan there", f"deltacam plan {drawing} {best.spot.options}, with all other options as here"),
         ("looked at", f"{found.maps.estimated} places and turns estimated, {len(found.best)} planned"),
     ]
     return tuple(facts)
