@@ -18,7 +18,7 @@ demo: $(VENV)/.user
 	@echo "Next: $(BIN)/deltacam plan --help"
 
 test: $(VENV)/.developer
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses logical --dist loadscope
 
 lint: $(VENV)/.developer
 	$(BIN)/ruff check .

@@ -16,7 +16,6 @@ import numpy as np
 from deltacam.cutting import kerf, order, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
 from deltacam.drawing.reader import read_drawing
-from deltacam.errors import ProgramError
 from deltacam.model import (
     EVERYTHING,
     Cut,
@@ -34,7 +33,7 @@ from deltacam.motion import setpoints
 from deltacam.placing.find import By, Found, Task, find
 from deltacam.placing.sampled import Sampled
 from deltacam.program import csv
-from deltacam.program.atomic import replace_when_done, write_whole
+from deltacam.program.atomic import write_whole
 from deltacam.program.outputs import Outputs, make_folder
 from deltacam.program.program import DrawingRef, Program
 from deltacam.report import html, listing
@@ -70,6 +69,7 @@ class Planned:
 def plan(
     drawing: str | Path,
     *,
+    data: bytes | None = None,
     robot: Robot | str | Path = DEFAULT_ROBOT,
     process: Process | str | Path = DEFAULT_PROCESS,
     unit: str | None = None,
@@ -87,6 +87,7 @@ def plan(
 
     Args:
         drawing: path of a DXF file.
+        data: the bytes of the drawing, where they are at hand; then ``drawing`` is only its name.
         robot: a robot, a built-in name, or the path of a robot file.
         process: a process, a built-in name, or the path of a process file.
         unit: what the drawing's numbers are, where the file does not say or is wrong: "mm", "in", ...
@@ -110,7 +111,7 @@ def plan(
     process = check_process(process if isinstance(process, Process) else load_process(process))
     progress("read", 0, 1)
     selection = replace(selection, rules=process.rules, open=process.open)
-    part = read_drawing(drawing, unit=unit, default_unit=default_unit, selection=selection)
+    part = read_drawing(drawing, data=data, unit=unit, default_unit=default_unit, selection=selection)
     how = _How(robot, process, at, rotation, mode, jobs, what_if, progress)
     found = None if place is None else _placed(part, how, place)
     if found is not None:
@@ -187,16 +188,25 @@ def plan_to_folder(
     outputs.clear()
     planned = plan(drawing, progress=progress, **options)
     progress("report", 0, 1)
-    write_whole(outputs.report_json, listing.to_json(planned.report).encode())
-    page = html.to_html(planned.report, planned.program, drawing=planned.drawing, title=Path(drawing).stem)
-    write_whole(outputs.report_html, page.encode())
+    data, page = reports_of(planned)
+    write_whole(outputs.report_json, data)
+    write_whole(outputs.report_html, page)
     if planned.report.passed:
-        with replace_when_done(outputs.program) as temporary:
-            temporary.write_bytes(planned.content)
-            if temporary.read_bytes() != planned.content:
-                raise ProgramError("the file system did not keep what was written", where=str(outputs.program))
+        write_whole(outputs.program, planned.content)
     progress("report", 1, 1)
     return planned, outputs
+
+
+def reports_of(planned: Planned, *, library: str | None = None) -> tuple[bytes, bytes]:
+    """The report of a plan as JSON and as a page.
+
+    Args:
+        planned: the program and its report.
+        library: where a copy of `page.plotly_js` lies, relative to the page; None puts it into the page, 4.8 MB.
+    """
+    title = Path(planned.drawing.file).stem
+    page = html.to_html(planned.report, planned.program, drawing=planned.drawing, title=title, library=library)
+    return listing.to_json(planned.report).encode(), page.encode()
 
 
 class _How(NamedTuple):

@@ -27,6 +27,7 @@ MAY_IMPORT = {
     "inspection": {"errors", "plain", "units", "model", "geometry"},
     "examine": {"errors", "model", "robot", "drawing", "cutting", "program", "verification"},
     "compare": {"errors", "model", "robot", "drawing", "cutting", "pipeline"},
+    "batch": {"errors", "plain", "units", "settings", "model", "geometry", "drawing", "program", "report", "pipeline"},
     "pipeline": {
         "errors",
         "units",
@@ -48,6 +49,8 @@ ONLY_IN = {
     "ezdxf": ("deltacam/drawing/",),
     "toppra": ("deltacam/motion/parametrize.py",),
     "click": ("cli/",),
+    "distributed": ("deltacam/batch/cluster.py",),
+    "filelock": ("deltacam/batch/folder.py",),
     "pyarrow": ("deltacam/program/parquet.py",),
     "shapely": ("deltacam/drawing/", "deltacam/cutting/", "deltacam/verification/"),
 }

@@ -48,6 +48,7 @@ def _without_collection() -> Iterator[None]:
 def read_drawing(
     path: str | Path,
     *,
+    data: bytes | None = None,
     unit: str | None = None,
     metres_per_unit: float | None = None,
     default_unit: str | None = None,
@@ -60,6 +61,7 @@ def read_drawing(
 
     Args:
         path: the DXF file.
+        data: its bytes, where they are at hand; then ``path`` is only its name.
         unit: mm, cm, m, um, in, ft, mil or pt; wins over the file's header, with a finding where they differ.
         metres_per_unit: an exact factor; wins over both.
         default_unit: what one unit is where the file does not say.
@@ -72,7 +74,7 @@ def read_drawing(
         DeltacamError: a unit that is not known, or a layer that the drawing does not have.
     """
     path = Path(path)
-    data = document.read_bytes(path)
+    data = document.read_bytes(path) if data is None else data
     loaded = document.load(data, path.name)
     source, lost, damage = loaded.document, loaded.lost, loaded.findings
     header = scale.read_header(source, data)

@@ -12,7 +12,7 @@ from deltacam.errors import ProgramError
 
 
 @contextmanager
-def replace_when_done(path: Path) -> Iterator[Path]:
+def replace_when_done(path: Path, *, by_way_of: Path | None = None) -> Iterator[Path]:
     """A temporary file beside ``path`` that takes its name when the block ends well.
 
     The temporary name starts with a dot and ends in ``.tmp``, so that nothing takes it for a program. It is removed
@@ -21,6 +21,7 @@ def replace_when_done(path: Path) -> Iterator[Path]:
 
     Args:
         path: where the file is wanted; its folder must exist.
+        by_way_of: the folder of the temporary file, on the same file system; None takes that of ``path``.
 
     Yields:
         the path of an empty file to write, read back and check.
@@ -28,7 +29,7 @@ def replace_when_done(path: Path) -> Iterator[Path]:
     Raises:
         ProgramError: the operating system refuses, within the block too.
     """
-    temporary = path.parent / f".deltacam-{secrets.token_hex(8)}.tmp"
+    temporary = (by_way_of or path.parent) / f".deltacam-{secrets.token_hex(8)}.tmp"
     try:
         try:
             temporary.touch(exist_ok=False)
@@ -45,14 +46,16 @@ def replace_when_done(path: Path) -> Iterator[Path]:
         raise ProgramError(f"the file cannot be written: {reason}", where=str(path), hint=hint) from problem
 
 
-def write_whole(path: Path, content: bytes) -> None:
+def write_whole(path: Path, content: bytes, *, by_way_of: Path | None = None) -> None:
     """Write ``content`` to ``path``, whole or not at all.
 
     Raises:
-        ProgramError: the operating system refuses.
+        ProgramError: the operating system refuses, or does not keep what was written.
     """
-    with replace_when_done(path) as temporary:
+    with replace_when_done(path, by_way_of=by_way_of) as temporary:
         temporary.write_bytes(content)
+        if temporary.read_bytes() != content:
+            raise ProgramError("the file system did not keep what was written", where=str(path))
 
 
 def _flush(path: Path) -> None:

@@ -1,0 +1,194 @@
+"""A process that plans parts for us, and that may hang, crash or eat memory without harm to anybody."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+from contextlib import suppress
+from typing import Any, Final
+
+from deltacam.batch import worker
+from deltacam.batch.parts import Limits, Outcome, Result, Status, Task
+from deltacam.errors import DeltacamError
+from deltacam.plain import plain
+
+_ONE_THREAD: Final = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""There is a process for every core already."""
+
+_ON_ITS_OWN: Final[dict[str, Any]] = (
+    {"creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)}
+    if sys.platform == "win32"
+    else {"start_new_session": True}
+)
+"""Ctrl-C on the terminal is for us and not for it."""
+
+_OUT_OF_MEMORY: Final = ("MemoryError", "bad_alloc")
+"""What Python and C++ say when they end for want of memory."""
+
+_LONGEST: Final = 300  # characters of what a process said last
+_ENDING: Final = 5.0  # s that a process may take to end when it has stopped to answer
+
+
+class WorkerProcess:
+    """Plans one part at a time, in a process that starts with the first and again after each that ended it.
+
+    Args:
+        limits: of every part.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+        self._running: _Running | None = None
+        self._closed = False
+        self._lock = threading.Lock()
+
+    def perform(self, task: Task) -> Result:
+        """Plan and verify a part; what it does to the process is the outcome.
+
+        Raises:
+            DeltacamError: no process can be started at all, or any more.
+        """
+        running = self._started()
+        with _Alarm(self._limits.time, running.process.kill) as alarm:
+            result = running.answer(task)
+        if result is None:
+            result = Result(self._late(task) if alarm.rang else _crashed(running, task))
+        if alarm.rang or result.outcome.status in (Status.MEMORY, Status.CRASHED):
+            self._end()
+        return result
+
+    def close(self) -> None:
+        """End the process at once, from any thread, and start no other."""
+        with self._lock:
+            self._closed = True
+        self._end()
+
+    def _started(self) -> _Running:
+        running = self._running or _Running(self._limits.memory)
+        with self._lock:
+            closed, self._running = self._closed, running
+        if closed:
+            self._end()
+            raise DeltacamError("the batch is over")
+        return running
+
+    def _end(self) -> None:
+        with self._lock:
+            running, self._running = self._running, None
+        if running is not None:
+            running.kill()
+
+    def _late(self, task: Task) -> Outcome:
+        return _ended(Status.TIMEOUT, task, f"not planned within {self._limits.time:g} s")
+
+
+class _Running:
+    """A process that is ready to plan.
+
+    Args:
+        memory: what it may take, bytes; None for any.
+
+    Raises:
+        DeltacamError: it does not get ready.
+    """
+
+    def __init__(self, memory: int | None) -> None:
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `kill`
+        # -P: what lies in the current folder is not imported.
+        self.process = subprocess.Popen(  # noqa: S603 - ourselves
+            [sys.executable, "-P", "-m", worker.__name__, *([] if memory is None else [str(memory)])],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            env={**os.environ, **_ONE_THREAD},
+            **_ON_ITS_OWN,
+        )
+        assert self.process.stdin is not None  # noqa: S101 - for types
+        assert self.process.stdout is not None  # noqa: S101 - for types
+        self._tasks, self._results = self.process.stdin, self.process.stdout
+        if worker.receive(self._results) != worker.READY:
+            what = f"a process that plans cannot be started: {self.last_words() or 'it ended at once'}"
+            self.kill()
+            raise DeltacamError(what, hint="" if memory is None else "let it have more memory with --memory")
+
+    def answer(self, task: Task) -> Result | None:
+        """What the process makes of the part; None where it ends instead."""
+        with suppress(OSError, ValueError):  # ValueError: the pipe was closed by `kill`
+            worker.send(self._tasks, pickle.dumps(task))
+            message = worker.receive(self._results)
+            if message is not None:
+                result: Result = pickle.loads(message)  # noqa: S301 - from our own process, through a pipe
+                return result
+        return None
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait()
+        for stream in (self._tasks, self._results, self._errors):
+            with suppress(OSError):  # what was on its way to it
+                stream.close()
+
+    def last_words(self) -> str:
+        """The last line that the process wrote on stderr."""
+        with suppress(OSError, ValueError):
+            self._errors.seek(0)
+            lines = self._errors.read().decode("utf-8", "replace").strip().splitlines()
+            return plain(lines[-1], longest=_LONGEST) if lines else ""
+        return ""
+
+
+class _Alarm:
+    """Calls ``action`` unless the block ends within ``time`` s; never once the block has ended."""
+
+    def __init__(self, time: float | None, action: Any) -> None:
+        self._action = action
+        self._lock = threading.Lock()
+        self._over = False
+        self._timer = None if time is None else threading.Timer(time, self._ring)
+        self.rang = False
+
+    def __enter__(self) -> _Alarm:
+        if self._timer:
+            self._timer.daemon = True
+            self._timer.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._over = True
+        if self._timer:
+            self._timer.cancel()
+
+    def _ring(self) -> None:
+        with self._lock:
+            if not self._over:
+                self.rang = True
+                self._action()
+
+
+def _crashed(running: _Running, task: Task) -> Outcome:
+    """How a process ended by itself."""
+    try:
+        code = running.process.wait(_ENDING)
+    except subprocess.TimeoutExpired:
+        return _ended(Status.CRASHED, task, "its process stopped to answer")
+    what, hint = f"its process ended with exit code {code}", "report it with the drawing"
+    if code < 0:
+        with suppress(ValueError):
+            what = f"its process was ended by {signal.Signals(-code).name}"
+        if -code == getattr(signal, "SIGKILL", None):
+            hint = "the system may have run out of memory: plan fewer parts at a time with --jobs"
+    words = running.last_words()
+    if any(sign in words for sign in _OUT_OF_MEMORY):
+        return _ended(Status.MEMORY, task, worker.TOO_LITTLE)
+    return _ended(Status.CRASHED, task, f"{what}: {words}" if words else what, hint)
+
+
+def _ended(status: Status, task: Task, what: str, hint: str = "") -> Outcome:
+    robot, process = (getattr(task.options.get(key), "name", "") for key in ("robot", "process"))
+    return Outcome(status, what, hint=hint, robot=robot, process=process)

@@ -1,0 +1,165 @@
+"""A batch: every part planned and verified, nothing twice, nothing lost."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Protocol
+
+from deltacam.batch.folder import ResultFolder, hold, is_full, library_of, share_plotly
+from deltacam.batch.index import to_html
+from deltacam.batch.listing import to_csv, to_json
+from deltacam.batch.parts import Batch, Outcome, Part, Result, Row, Status, Stored, Task
+from deltacam.batch.record import Record, Recorded
+from deltacam.batch.task import key_of, sha256
+from deltacam.drawing.dxf.document import read_bytes
+from deltacam.errors import DeltacamError, ProgramError
+
+SUMMARIES = {"batch.json": to_json, "batch.csv": to_csv, "index.html": to_html}
+"""The files that say what became of all parts, and how each is made."""
+
+
+class Planner(Protocol):
+    """What plans: processes of this machine, or of a cluster."""
+
+    def __call__(self, tasks: Iterator[Task], *, stop: threading.Event) -> Iterator[tuple[Task, Result]]:
+        """What becomes of every task, in any order, until ``stop`` is set."""
+
+
+def run(
+    parts: Sequence[Part],
+    output: Path,
+    *,
+    planner: Planner,
+    force: bool = False,
+    notes: Sequence[str] = (),
+    stop: threading.Event | None = None,
+    tell: Callable[[Row], None] = lambda _row: None,
+) -> Batch:
+    """Plan and verify every part, and write what comes of it into a folder, with a summary.
+
+    A part whose files are there, made from the same drawing, robot, process and other options by the same version, is
+    not planned again.
+
+    Args:
+        parts: of different names.
+        output: the folder of results; made where it is missing.
+        planner: plans.
+        force: plan also what is there.
+        notes: for the summary.
+        stop: once it is set, what is not begun is left for another run; a full disk sets it too.
+        tell: is told of every part as soon as it is known.
+
+    Returns:
+        a row for every part.
+
+    Raises:
+        DeltacamError: the folder cannot be used, or nothing can be planned at all; what was done by then is there, and
+            the next run does the rest.
+    """
+    stop = stop or threading.Event()
+    with hold(output) as folder:
+        state = _Run(folder, Record(folder), {part.name: part for part in parts}, stop, tell)
+        for name in SUMMARIES:
+            folder.remove(name)
+        share_plotly(folder)
+        state.begin(force=force)
+        for task, result in planner(state.tasks(), stop=stop):
+            state.store(task, result)
+        batch = state.end(notes)
+        for name, write in SUMMARIES.items():
+            folder.write(name, write(batch).encode())
+        return batch
+
+
+class _Run:
+    """What is known of every part so far.
+
+    Args:
+        folder: held.
+        record: of it.
+        parts: by their names.
+        stop: is set where the disk is full.
+        tell: is told of every row.
+    """
+
+    def __init__(
+        self,
+        folder: ResultFolder,
+        record: Record,
+        parts: dict[str, Part],
+        stop: threading.Event,
+        tell: Callable[[Row], None],
+    ) -> None:
+        self._folder, self._record, self._parts, self._stop, self._tell = folder, record, parts, stop, tell
+        self._rows: dict[str, Row] = {}
+        self._todo: list[tuple[int, str]] = []
+        self._why_left = "the batch was stopped before"
+
+    def begin(self, *, force: bool) -> None:
+        """Find out what is there already, and remove what was made from something else."""
+        for name, part in sorted(self._parts.items()):
+            data = self._read(part)
+            if data is None:
+                continue
+            found = self._record.parts.get(name)
+            if found and not force and self._is_there(found, key_of(part, data)):
+                self._keep(part, found, data)
+            else:
+                self._folder.clear(part)
+                self._todo.append((len(data), name))
+
+    def tasks(self) -> Iterator[Task]:
+        """What is to be planned, large drawings first, so that no long one is left for the end."""
+        for _, name in sorted(self._todo, key=lambda one: (-one[0], one[1])):
+            part = self._parts[name]
+            data = self._read(part)  # again, so that memory holds few at a time
+            if data is not None:
+                yield Task(name, data, part.options, key_of(part, data), library_of(name))
+
+    def store(self, task: Task, result: Result) -> None:
+        """Write the files of a part, and that it is done."""
+        part, outcome = self._parts[task.name], result.outcome
+        files: tuple[Stored, ...] = ()
+        try:
+            files = self._folder.store(part, result.files)
+            if outcome.status.lasts:
+                self._record.add(task.name, Recorded(task.key, outcome, files))
+        except ProgramError as problem:
+            outcome = replace(outcome, status=Status.UNWRITTEN, what=problem.what, where="", hint=problem.hint)
+            if is_full(problem):
+                self._why_left = "the batch was stopped because the disk is full"
+                self._stop.set()
+        self._put(Row(part.name, part.quantity, outcome, files, sha256(task.data), task.key))
+
+    def end(self, notes: Sequence[str]) -> Batch:
+        """The rows of all parts."""
+        for name, part in self._parts.items():
+            if name not in self._rows:
+                self._put(Row(name, part.quantity, Outcome(Status.LEFT, self._why_left, hint="run it again")))
+        others = sorted(name for name, found in self._record.parts.items() if found.files and name not in self._parts)
+        self._record.compact()
+        left_over = [f"not of this batch, but of an earlier one: {', '.join(others)}"] if others else []
+        return Batch(tuple(self._rows[name] for name in sorted(self._rows)), (*notes, *left_over))
+
+    def _read(self, part: Part) -> bytes | None:
+        """The bytes of the drawing; where they cannot be read, that is what became of it."""
+        try:
+            return read_bytes(part.path)
+        except DeltacamError as problem:
+            self._folder.clear(part)
+            self._put(Row(part.name, part.quantity, Outcome(Status.REFUSED, problem.what, hint=problem.hint)))
+            return None
+
+    def _is_there(self, found: Recorded, key: str) -> bool:
+        return found.key == key and found.outcome.status.lasts and self._folder.holds(found.files)
+
+    def _keep(self, part: Part, found: Recorded, data: bytes) -> None:
+        row = Row(part.name, part.quantity, found.outcome, found.files, sha256(data), found.key, again=True)
+        self._put(row)
+
+    def _put(self, row: Row) -> None:
+        self._rows[row.part] = row
+        self._tell(row)

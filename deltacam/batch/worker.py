@@ -1,0 +1,92 @@
+"""The process that plans parts one after the other: tasks come on stdin, results go to stdout.
+
+It ends with its parent, also where that is killed: the pipe that the tasks come through closes then.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import queue
+import struct
+import sys
+import threading
+from collections.abc import Iterator
+from typing import IO, Final
+
+_HEAD: Final = struct.Struct("<Q")
+READY: Final = b"ready"
+"""The first message of a worker."""
+
+TOO_LITTLE: Final = "the memory that a part may take is not enough"
+"""What is said of a part that needs more."""
+
+
+def send(stream: IO[bytes], message: bytes) -> None:
+    """Write a message, its length first.
+
+    Raises:
+        OSError: the other side has gone.
+    """
+    stream.write(_HEAD.pack(len(message)))
+    stream.write(message)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> bytes | None:
+    """Read a message; None where the other side has gone, also in the middle of one."""
+    head = stream.read(_HEAD.size)
+    if len(head) < _HEAD.size:
+        return None
+    (size,) = _HEAD.unpack(head)
+    message = stream.read(size)
+    return message if len(message) == size else None
+
+
+def limit_memory(size: int) -> None:
+    """Let this process have so many bytes of its own, where the system can do that: Linux.
+
+    Python raises MemoryError where it would take more. What it has in files and in reserve does not count.
+    """
+    if sys.platform == "linux":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_DATA, (size, size))
+
+
+def main(memory: int | None) -> None:
+    """Plan what comes until nothing comes any more."""
+    tasks, results = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a library prints must not come between the results
+    if memory is not None:
+        limit_memory(memory)
+    from deltacam.batch.parts import Result, Status
+    from deltacam.batch.task import perform
+
+    send(results, READY)
+    for message in _messages(tasks):
+        result: Result = perform(pickle.loads(message))  # noqa: S301 - from our own parent, through a pipe
+        send(results, pickle.dumps(result))
+        if result.outcome.status is Status.MEMORY:
+            return  # a fresh process has its memory in one piece
+
+
+def _messages(stream: IO[bytes]) -> Iterator[bytes]:
+    """What comes through the stream; the process ends where the stream does, also while it is planning."""
+    waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+
+    def listen() -> None:
+        try:
+            while (message := receive(stream)) is not None:
+                waiting.put(message)
+        except MemoryError:
+            os.write(2, b"MemoryError\n")
+        os._exit(1)
+
+    threading.Thread(target=listen, daemon=True).start()
+    while True:
+        yield waiting.get()
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else None)
