@@ -10,6 +10,7 @@ ROOT = Path(__file__).parent.parent
 
 MAY_IMPORT = {
     "errors": set(),
+    "machine": set(),
     "plain": set(),
     "units": {"errors"},
     "settings": {"errors", "units"},
@@ -19,7 +20,7 @@ MAY_IMPORT = {
     "robot": {"errors", "units", "settings", "model", "geometry"},
     "drawing": {"errors", "units", "model", "geometry"},
     "cutting": {"errors", "units", "settings", "model", "geometry", "robot"},
-    "motion": {"errors", "units", "model", "geometry", "robot"},
+    "motion": {"errors", "machine", "units", "model", "geometry", "robot"},
     "placing": {"errors", "units", "model", "geometry", "robot", "cutting", "motion"},
     "program": {"errors", "units", "model", "geometry", "robot"},
     "verification": {"errors", "units", "model", "geometry", "robot", "drawing", "program"},
@@ -27,7 +28,19 @@ MAY_IMPORT = {
     "inspection": {"errors", "plain", "units", "model", "geometry"},
     "examine": {"errors", "model", "robot", "drawing", "cutting", "program", "verification"},
     "compare": {"errors", "model", "robot", "drawing", "cutting", "pipeline"},
-    "batch": {"errors", "plain", "units", "settings", "model", "geometry", "drawing", "program", "report", "pipeline"},
+    "batch": {
+        "errors",
+        "machine",
+        "plain",
+        "units",
+        "settings",
+        "model",
+        "geometry",
+        "drawing",
+        "program",
+        "report",
+        "pipeline",
+    },
     "pipeline": {
         "errors",
         "units",
