@@ -37,6 +37,7 @@ MAY_IMPORT = {
         "model",
         "geometry",
         "drawing",
+        "inspection",
         "program",
         "report",
         "pipeline",
