@@ -80,7 +80,7 @@ class Task:
         name: of the part.
         data: the bytes of the drawing.
         options: of `pipeline.plan`.
-        key: names the part's content, the options and the version of deltacam, as `task.key_of` makes it.
+        key: names the part's content, the options and the version of deltacam, as `key.key_of` makes it.
         library: where plotly.js lies, relative to the page of the part.
     """
 
