@@ -41,6 +41,8 @@ _FINE_ANGLES: Final = {
     "rad": 1.0,
 }
 _SECONDS_PER: Final[dict[str, float]] = {"s": 1.0, "min": 60.0}
+_LONGER_TIMES: Final[dict[str, float]] = {**_SECONDS_PER, "h": 3600.0}
+_BYTES_PER: Final[dict[str, float]] = {"mb": 1e6, "gb": 1e9, "mib": 2.0**20, "gib": 2.0**30}
 
 USUAL_SIZES: Final = (10e-3, 1.5)
 """Smallest and largest size of a part that is no surprise, m."""
@@ -186,6 +188,34 @@ def parse_jerk(text: str) -> float | None:
     if unit not in ("", "deg/s3", "rad/s3"):
         raise DeltacamError(f"unknown unit of jerk {unit!r}", hint="use deg/s3 or rad/s3")
     return value if unit == "rad/s3" else math.radians(value)
+
+
+def parse_duration(text: str) -> float | None:
+    """The time in seconds that ``text`` states; a bare number is seconds: ``90``, ``10min``, ``2h``; None for ``none``.
+
+    Raises:
+        DeltacamError: neither ``none`` nor a finite number, or an unknown unit.
+    """
+    if text.strip().lower() == "none":
+        return None
+    value, unit = _split(text, "duration", "90s, 10min or none")
+    if (unit or "s") not in _LONGER_TIMES:
+        raise DeltacamError(f"unknown unit of time {unit!r}", hint="use s, min or h")
+    return value * _LONGER_TIMES[unit or "s"]
+
+
+def parse_memory(text: str) -> int | None:
+    """The bytes that ``text`` states; a bare number is GB: ``2``, ``1.5GB``, ``800MB``; None for ``none``.
+
+    Raises:
+        DeltacamError: neither ``none`` nor a finite number, or an unknown unit.
+    """
+    if text.strip().lower() == "none":
+        return None
+    value, unit = _split(text, "size of memory", "2GB, 800MB or none")
+    if (unit or "GB").lower() not in _BYTES_PER:
+        raise DeltacamError(f"unknown unit of memory {unit!r}", hint="use MB, GB, MiB or GiB")
+    return round(value * _BYTES_PER[(unit or "GB").lower()])
 
 
 def _split(text: str, kind: str, example: str) -> tuple[float, str]:

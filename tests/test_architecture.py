@@ -10,6 +10,7 @@ ROOT = Path(__file__).parent.parent
 
 MAY_IMPORT = {
     "errors": set(),
+    "machine": set(),
     "plain": set(),
     "units": {"errors"},
     "settings": {"errors", "units"},
@@ -19,7 +20,7 @@ MAY_IMPORT = {
     "robot": {"errors", "units", "settings", "model", "geometry"},
     "drawing": {"errors", "units", "model", "geometry"},
     "cutting": {"errors", "units", "settings", "model", "geometry", "robot"},
-    "motion": {"errors", "units", "model", "geometry", "robot"},
+    "motion": {"errors", "machine", "units", "model", "geometry", "robot"},
     "placing": {"errors", "units", "model", "geometry", "robot", "cutting", "motion"},
     "program": {"errors", "units", "model", "geometry", "robot"},
     "verification": {"errors", "units", "model", "geometry", "robot", "drawing", "program"},
@@ -29,6 +30,7 @@ MAY_IMPORT = {
     "compare": {"errors", "model", "robot", "drawing", "cutting", "pipeline"},
     "batch": {
         "errors",
+        "machine",
         "plain",
         "units",
         "settings",
@@ -36,6 +38,7 @@ MAY_IMPORT = {
         "model",
         "geometry",
         "drawing",
+        "inspection",
         "program",
         "report",
         "pipeline",

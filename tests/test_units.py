@@ -7,7 +7,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deltacam.errors import DeltacamError
-from deltacam.units import METRES_PER, likely_units, metres_per, parse_fine_angle, parse_jerk, parse_length, parse_speed
+from deltacam.units import (
+    METRES_PER,
+    likely_units,
+    metres_per,
+    parse_duration,
+    parse_fine_angle,
+    parse_jerk,
+    parse_length,
+    parse_memory,
+    parse_speed,
+)
 
 
 @pytest.mark.parametrize(
@@ -62,6 +72,30 @@ def test_what_is_no_jerk_is_refused_with_an_example_or_the_units(text: str) -> N
     with pytest.raises(DeltacamError, match="jerk") as caught:
         parse_jerk(text)
     assert "rad/s3" in caught.value.hint
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [("90", 90.0), (" 1.5 s", 1.5), ("10min", 600.0), ("2h", 7200.0), ("none", None), ("NONE", None)],
+)
+def test_a_duration_is_in_seconds_unless_it_states_another_unit(text: str, seconds: float | None) -> None:
+    assert parse_duration(text) == seconds
+
+
+@pytest.mark.parametrize(
+    ("text", "size"),
+    [("2", 2_000_000_000), ("1.5 GB", 1_500_000_000), ("800mb", 800_000_000), ("1GiB", 2**30), ("none", None)],
+)
+def test_a_size_of_memory_is_in_gigabytes_unless_it_states_another_unit(text: str, size: int | None) -> None:
+    assert parse_memory(text) == size
+
+
+@pytest.mark.parametrize("text", ["", "no", "nan", "1e999", "s", "GB", "5 days", "5 kg", "1,5"])
+def test_what_is_no_duration_and_no_size_of_memory_is_refused_with_an_example_or_the_units(text: str) -> None:
+    for parse, known in ((parse_duration, "min"), (parse_memory, "MB")):
+        with pytest.raises(DeltacamError) as caught:
+            parse(text)
+        assert known in caught.value.hint
 
 
 def test_a_unit_is_known_in_any_case_and_an_unknown_one_lists_them_all() -> None:

@@ -211,6 +211,20 @@ def unit(option: str, text: str | None) -> str | None:
     return text
 
 
+def bounded(
+    option: str, text: str, parse: Callable[[str], T | None], bounds: tuple[float, float], said: str
+) -> T | None:
+    """What ``text`` states, within the bounds, as they are ``said``; None for ``none``.
+
+    Raises:
+        DeltacamError: it cannot be read or is out of bounds; names the option.
+    """
+    value = _read(option, text, parse)
+    if value is not None and not bounds[0] <= value <= bounds[1]:  # type: ignore[operator]
+        raise DeltacamError(f"{text.strip()} is out of range", where=option, hint=f"it must be {said}, or none")
+    return value
+
+
 def place(option: str, text: str) -> tuple[float, float]:
     """Two lengths in metres, written ``X,Y``; bare numbers are millimetres.
 

@@ -9,7 +9,7 @@ import click
 
 from deltacam_cli import options
 from deltacam_cli.main import EXIT_FAILED, LONGEST_MESSAGE, show_json
-from deltacam_cli.planning import JOBS, planning_options, settings
+from deltacam_cli.planning import JOBS, how, how_options, planning_options, settings
 from deltacam_cli.progress import ProgressLine
 
 if TYPE_CHECKING:
@@ -22,21 +22,8 @@ if TYPE_CHECKING:
 @click.argument("drawing", type=click.Path(path_type=Path))
 @click.option("-o", "--output", "folder", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.")
 @planning_options
-@click.option("--at", metavar="X,Y", help="Where the part's centre goes, mm; without it 0,0.")
-@click.option("--rotate", metavar="ANGLE", help="Turn the part by so many degrees.")
-@click.option(
-    "--place",
-    type=click.Choice(["auto", "time", "accuracy"]),
-    help="Find the place and the turn: by time and accuracy (auto), or by one of them.",
-)
-@click.option("--dry-run", is_flag=True, help="The same motion with the laser off.")
-@click.option("--frame", is_flag=True, help="Only trace the bounding box, with the laser off.")
+@how_options
 @click.option("--jobs", type=JOBS, help="Processes for planning; the result is the same. 0: as many as pay.")
-@click.option(
-    "--what-if/--no-what-if",
-    default=None,
-    help="Also say how long each cut would take without each limit. Without either: where that is quick.",
-)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the summary.")
 def command(
     drawing: Path,
@@ -47,8 +34,8 @@ def command(
     at: str | None,
     rotate: str | None,
     place: str | None,
-    jobs: int | None,
     what_if: bool | None,
+    jobs: int | None,
     as_json: bool,
     **values: Any,
 ) -> None:
@@ -61,40 +48,25 @@ def command(
     deltacam plan part.dxf --units mm --kerf 0.2 --feed 12m/min -o out
     deltacam plan part.dxf --place auto
     """
-    from deltacam.model import Mode
     from deltacam.pipeline import plan_to_folder
     from deltacam.program.outputs import Outputs
 
-    if dry_run and frame:
-        raise click.UsageError("--dry-run and --frame exclude each other")
     Outputs.of(drawing, folder).clear()  # before anything else can be refused
     own = options.defaults()
-    where = _where(at, rotate, place)
+    given = how(at=at, rotate=rotate, place=place, dry_run=dry_run, frame=frame, what_if=what_if)
     with ProgressLine() as progress:
         planned, outputs = plan_to_folder(
             drawing,
             folder,
-            mode=Mode.FRAME if frame else Mode.DRY_RUN if dry_run else Mode.CUT,
             jobs=jobs or None,
-            what_if=what_if,
             progress=progress,
-            **where,
+            **given,
             **settings(own, **values),
         )
     _show(planned, outputs, own, as_json=as_json)
     if not planned.report.passed:
         click.echo("error: a check failed, so no program was written; the report says which", err=True)
         raise click.exceptions.Exit(EXIT_FAILED)
-
-
-def _where(at: str | None, rotate: str | None, place: str | None) -> dict[str, Any]:
-    """Where the part goes, as the pipeline takes it."""
-    given = {"at": options.place("--at", at or "0,0"), "rotation": options.angle("--rotate", rotate or "0")}
-    if place is None:
-        return given
-    if at is not None or rotate is not None:
-        raise click.UsageError("--place finds the place and the turn; --at and --rotate give them")
-    return {"place": "both" if place == "auto" else place}
 
 
 def _show(planned: Planned, outputs: Outputs, own: Defaults, *, as_json: bool) -> None:

@@ -18,6 +18,23 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 JOBS = click.IntRange(0, 64)
 
+_HOW = (
+    click.option("--at", metavar="X,Y", help="Where the part's centre goes, mm; without it 0,0."),
+    click.option("--rotate", metavar="ANGLE", help="Turn the part by so many degrees."),
+    click.option(
+        "--place",
+        type=click.Choice(["auto", "time", "accuracy"]),
+        help="Find the place and the turn: by time and accuracy (auto), or by one of them.",
+    ),
+    click.option("--dry-run", is_flag=True, help="The same motion with the laser off."),
+    click.option("--frame", is_flag=True, help="Only trace the bounding box, with the laser off."),
+    click.option(
+        "--what-if/--no-what-if",
+        default=None,
+        help="Also say how long each cut would take without each limit. Without either: where that is quick.",
+    ),
+)
+
 _MACHINE = (
     click.option("--robot", help="A built-in robot, or a robot file (.toml). Without deltacam.toml: delta-300."),
     click.option("--process", help="A built-in process, or a file (.toml). Without deltacam.toml: steel-1mm-fibre."),
@@ -44,6 +61,37 @@ def planning_options(command: Command) -> Command:
     for add in reversed(_MACHINE):
         command = add(command)
     return command
+
+
+def how_options(command: Command) -> Command:
+    """Add the options that say where a part goes and what is done with it; `how` reads them."""
+    for add in reversed(_HOW):
+        command = add(command)
+    return command
+
+
+def how(
+    *, at: str | None, rotate: str | None, place: str | None, dry_run: bool, frame: bool, what_if: bool | None
+) -> dict[str, Any]:
+    """What `how_options` say, as the pipeline takes it.
+
+    Raises:
+        DeltacamError: a value is wrong; names the option.
+        UsageError: two options exclude each other.
+    """
+    from deltacam.model import Mode
+
+    if dry_run and frame:
+        raise click.UsageError("--dry-run and --frame exclude each other")
+    if place is not None and (at is not None or rotate is not None):
+        raise click.UsageError("--place finds the place and the turn; --at and --rotate give them")
+    given = {"at": options.place("--at", at or "0,0"), "rotation": options.angle("--rotate", rotate or "0")}
+    found = {"place": "both" if place == "auto" else place}
+    return {
+        "mode": Mode.FRAME if frame else Mode.DRY_RUN if dry_run else Mode.CUT,
+        "what_if": what_if,
+        **(given if place is None else found),
+    }
 
 
 def settings(

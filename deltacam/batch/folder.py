@@ -12,10 +12,10 @@ from typing import Final
 
 from filelock import FileLock, Timeout
 
-from deltacam.batch.parts import Part, Stored
+from deltacam.batch.parts import Part, Status, Stored
 from deltacam.errors import ProgramError
 from deltacam.program.atomic import write_whole
-from deltacam.program.outputs import Outputs, make_folder
+from deltacam.program.outputs import Outputs
 from deltacam.report.page import plotly_js
 
 PRIVATE: Final = ".deltacam-batch"
@@ -26,6 +26,9 @@ PLOTLY: Final = "plotly.min.js"
 
 ENDINGS: Final = (".report.json", ".report.html", ".program.csv")
 """Of the files of a part, in the order in which they are written: a program never lies there without its reports."""
+
+_ENDINGS_OF: Final = {Status.PASSED: ENDINGS, Status.FAILED: ENDINGS[:-1]}
+"""Of the files of a part that ended like this; else there are none."""
 
 
 class ResultFolder:
@@ -87,9 +90,11 @@ class ResultFolder:
         except OSError as problem:
             raise _refused(problem, "the file of an earlier run cannot be removed", path) from problem
 
-    def holds(self, files: Sequence[Stored]) -> bool:
-        """Whether all files are there, with the content that they had."""
-        return all(_sha256(self.path / file.name) == file.sha256 for file in files)
+    def holds(self, part: Part, status: Status, files: Sequence[Stored]) -> bool:
+        """Whether these are all files of a part that ended like this, and are there with the content that they had."""
+        expected = [part.stem + ending for ending in _ENDINGS_OF.get(status, ())]
+        there = (_sha256(self.path / file.name) == file.sha256 for file in files)
+        return [file.name for file in files] == expected and all(there)
 
 
 @contextmanager
@@ -101,10 +106,14 @@ def hold(path: Path) -> Iterator[ResultFolder]:
     Raises:
         ProgramError: another batch writes to it, or it cannot be written to.
     """
-    make_folder(path)
     folder = ResultFolder(path)
     try:
-        folder.private.mkdir(exist_ok=True)
+        if path.exists() and not path.is_dir():
+            raise ProgramError("this is a file, not a folder", where=str(path), hint="name a folder with -o")
+        folder.private.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise _refused(problem, "the folder cannot be written to", path) from problem
+    try:
         lock = FileLock(folder.private / "lock", timeout=0)
         lock.acquire()
     except Timeout:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import queue
 import threading
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import Final
 
@@ -16,7 +17,7 @@ _AHEAD: Final = 2
 
 def results(
     tasks: Iterator[Task], *, jobs: int, limits: Limits, stop: threading.Event
-) -> Iterator[tuple[Task, Result]]:
+) -> Generator[tuple[Task, Result]]:
     """What becomes of every task, as soon as it is known; memory holds a few tasks at a time.
 
     Args:
@@ -28,7 +29,7 @@ def results(
     Raises:
         DeltacamError: no process can be started.
     """
-    workers = _Workers(limits, stop)
+    workers = _Workers(jobs, limits, stop)
     running: dict[Future[Result | None], Task] = {}
     pool = ThreadPoolExecutor(jobs)
     try:
@@ -43,29 +44,30 @@ def results(
                 if (result := future.result()) is not None:
                     yield task, result
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
         workers.close()
-        pool.shutdown(wait=True)
+        pool.shutdown(wait=True, cancel_futures=True)
 
 
 class _Workers:
-    """A process for every thread that asks for one."""
+    """So many processes; a thread takes the one that was last free, so that no more are started than are of use."""
 
-    def __init__(self, limits: Limits, stop: threading.Event) -> None:
-        self._limits, self._stop = limits, stop
-        self._own = threading.local()
-        self._all: list[WorkerProcess] = []
+    def __init__(self, number: int, limits: Limits, stop: threading.Event) -> None:
+        self._stop = stop
+        self._all = tuple(WorkerProcess(limits) for _ in range(number))
+        self._free: queue.LifoQueue[WorkerProcess] = queue.LifoQueue()
+        for worker in self._all:
+            self._free.put(worker)
 
     def perform(self, task: Task) -> Result | None:
         """What becomes of a task; None where it is not begun any more."""
         if self._stop.is_set():
             return None
-        worker: WorkerProcess | None = getattr(self._own, "worker", None)
-        if worker is None:
-            worker = self._own.worker = WorkerProcess(self._limits)
-            self._all.append(worker)
-        return worker.perform(task)
+        worker = self._free.get()
+        try:
+            return worker.perform(task)
+        finally:
+            self._free.put(worker)
 
     def close(self) -> None:
-        for worker in list(self._all):
+        for worker in self._all:
             worker.close()

@@ -80,7 +80,7 @@ class Task:
         name: of the part.
         data: the bytes of the drawing.
         options: of `pipeline.plan`.
-        key: names the part's content, the options and the version of deltacam, as `task.key_of` makes it.
+        key: names the part's content, the options and the version of deltacam, as `key.key_of` makes it.
         library: where plotly.js lies, relative to the page of the part.
     """
 
@@ -195,6 +195,10 @@ class Row:
     drawing_sha256: str = ""
     key: str = ""
     again: bool = False
+
+    def file(self, ending: str) -> str:
+        """The name of the file with that ending; empty where there is none."""
+        return next((file.name for file in self.files if file.name.endswith(ending)), "")
 
 
 @dataclass(frozen=True, slots=True)

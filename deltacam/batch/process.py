@@ -10,7 +10,7 @@ import sys
 import tempfile
 import threading
 from contextlib import suppress
-from typing import Any, Final
+from typing import IO, Any, Final
 
 from deltacam.batch import worker
 from deltacam.batch.parts import Limits, Outcome, Result, Status, Task
@@ -31,6 +31,7 @@ _OUT_OF_MEMORY: Final = ("MemoryError", "bad_alloc")
 """What Python and C++ say when they end for want of memory."""
 
 _LONGEST: Final = 300  # characters of what a process said last
+_STARTING: Final = 300.0  # s that a process may take to get ready
 _ENDING: Final = 5.0  # s that a process may take to end when it has stopped to answer
 
 
@@ -53,7 +54,7 @@ class WorkerProcess:
         Raises:
             DeltacamError: no process can be started at all, or any more.
         """
-        running = self._started()
+        running = self._ready()
         with _Alarm(self._limits.time, running.process.kill) as alarm:
             result = running.answer(task)
         if result is None:
@@ -68,13 +69,19 @@ class WorkerProcess:
             self._closed = True
         self._end()
 
-    def _started(self) -> _Running:
-        running = self._running or _Running(self._limits.memory)
+    def _ready(self) -> _Running:
+        before = self._running
+        if before is not None and before.process.poll() is not None:
+            self._end()  # between two parts, so none of them did it
         with self._lock:
-            closed, self._running = self._closed, running
-        if closed:
+            if self._closed:
+                raise DeltacamError("the batch is over")
+            running = self._running = self._running or _Running(self._limits.memory)
+        try:
+            running.get_ready()
+        except BaseException:
             self._end()
-            raise DeltacamError("the batch is over")
+            raise
         return running
 
     def _end(self) -> None:
@@ -88,37 +95,48 @@ class WorkerProcess:
 
 
 class _Running:
-    """A process that is ready to plan.
+    """A process that plans once it is ready.
 
     Args:
         memory: what it may take, bytes; None for any.
 
     Raises:
-        DeltacamError: it does not get ready.
+        DeltacamError: it cannot be started.
     """
 
     def __init__(self, memory: int | None) -> None:
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `kill`
-        # -P: what lies in the current folder is not imported.
-        self.process = subprocess.Popen(  # noqa: S603 - ourselves
-            [sys.executable, "-P", "-m", worker.__name__, *([] if memory is None else [str(memory)])],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-            env={**os.environ, **_ONE_THREAD},
-            **_ON_ITS_OWN,
-        )
+        self._memory = memory
+        self._is_ready = False
+        try:
+            self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `kill`
+            self.process = _start(memory, self._errors)
+        except OSError as problem:
+            what = f"a process that plans cannot be started: {(problem.strerror or str(problem)).lower()}"
+            raise DeltacamError(what, hint="plan fewer parts at a time with --jobs") from problem
         assert self.process.stdin is not None  # noqa: S101 - for types
         assert self.process.stdout is not None  # noqa: S101 - for types
         self._tasks, self._results = self.process.stdin, self.process.stdout
-        if worker.receive(self._results) != worker.READY:
-            what = f"a process that plans cannot be started: {self.last_words() or 'it ended at once'}"
-            self.kill()
-            raise DeltacamError(what, hint="" if memory is None else "let it have more memory with --memory")
+
+    def get_ready(self) -> None:
+        """Wait until it can plan.
+
+        Raises:
+            DeltacamError: it ends instead, or takes too long.
+        """
+        if self._is_ready:
+            return
+        with _Alarm(_STARTING, self.process.kill) as alarm, suppress(OSError, ValueError):  # as in `answer`
+            self._is_ready = worker.receive(self._results) == worker.READY
+        if not self._is_ready:
+            words = f"not within {_STARTING:g} s" if alarm.rang else self.last_words() or "it ended at once"
+            hint = "" if self._memory is None else "let it have more memory with --memory"
+            raise DeltacamError(f"a process that plans cannot be started: {words}", hint=hint)
 
     def answer(self, task: Task) -> Result | None:
         """What the process makes of the part; None where it ends instead."""
         with suppress(OSError, ValueError):  # ValueError: the pipe was closed by `kill`
+            self._errors.seek(0)  # which is where the process goes on writing: its last words are about this part
+            self._errors.truncate()
             worker.send(self._tasks, pickle.dumps(task))
             message = worker.receive(self._results)
             if message is not None:
@@ -140,6 +158,19 @@ class _Running:
             lines = self._errors.read().decode("utf-8", "replace").strip().splitlines()
             return plain(lines[-1], longest=_LONGEST) if lines else ""
         return ""
+
+
+def _start(memory: int | None, errors: IO[bytes]) -> subprocess.Popen[bytes]:
+    """Raises OSError where the system does not allow another process."""
+    # -P: what lies in the current folder is not imported.
+    return subprocess.Popen(  # noqa: S603 - ourselves
+        [sys.executable, "-P", "-m", worker.__name__, *([] if memory is None else [str(memory)])],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=errors,
+        env={**os.environ, **_ONE_THREAD},
+        **_ON_ITS_OWN,
+    )
 
 
 class _Alarm:

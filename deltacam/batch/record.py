@@ -6,6 +6,7 @@ A line that a kill cut off counts as not written; so does one that does not look
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Mapping
 from contextlib import suppress
@@ -19,6 +20,12 @@ from deltacam.errors import ProgramError
 from deltacam.program.atomic import write_whole
 
 NAME: Final = "record.jsonl"
+
+_ROOM: Final = "choose another folder with -o, or make room and permission there"
+
+
+_NOT_OURS: Final = (ValueError, TypeError, LookupError, ArithmeticError, RecursionError)
+"""What comes of reading a line that is not one of ours, or not all of it."""
 
 
 class Recorded(NamedTuple):
@@ -59,8 +66,13 @@ class Record:
                 os.fsync(stream.fileno())
         except OSError as problem:
             reason = (problem.strerror or str(problem)).lower()
-            raise ProgramError(f"the record cannot be written: {reason}", where=str(self._path)) from problem
+            what = f"the record cannot be written: {reason}"
+            raise ProgramError(what, where=str(self._path), hint=_ROOM) from problem
         self.parts[name] = found
+
+    def forget(self, name: str) -> None:
+        """Know nothing of a part any more, because its files are not what they were; nothing is written."""
+        self.parts.pop(name, None)
 
     def compact(self) -> None:
         """Write one line for every part, in the order of the names: the same for the same parts.
@@ -83,17 +95,18 @@ def _read(path: Path) -> dict[str, Recorded]:
         return {}
     except OSError as problem:
         reason = (problem.strerror or str(problem)).lower()
-        raise ProgramError(f"the record cannot be read: {reason}", where=str(path)) from problem
+        hint = "remove it, and every part is planned again"
+        raise ProgramError(f"the record cannot be read: {reason}", where=str(path), hint=hint) from problem
     found: dict[str, Recorded] = {}
     for line in lines:
-        with suppress(ValueError, TypeError, KeyError, RecursionError):  # not a line of ours, or not all of it
+        with suppress(*_NOT_OURS):
             values = json.loads(line)
             found[_text(values["part"])] = _recorded(values)
     return found
 
 
 def _recorded(values: Mapping[str, Any]) -> Recorded:
-    """Raises ValueError, TypeError or KeyError where the values are not as we write them."""
+    """Raises one of `_NOT_OURS` where the values are not as we write them."""
     given, facts = dict(values["outcome"]), values["outcome"]["facts"]
     given["status"] = Status(given["status"])
     given["warnings"] = tuple(map(_text, given["warnings"]))
@@ -108,9 +121,9 @@ def _recorded(values: Mapping[str, Any]) -> Recorded:
 def _facts(values: Mapping[str, Any]) -> Facts:
     size = values["size"]
     return Facts(
-        time=float(values["time"]),
-        cut_length=float(values["cut_length"]),
-        size=None if size is None else (float(size[0]), float(size[1])),
+        time=_number(values["time"]),
+        cut_length=_number(values["cut_length"]),
+        size=None if size is None else (_number(size[0]), _number(size[1])),
         contours=_whole(values["contours"]),
         checks=_whole(values["checks"]),
         failed=tuple(map(_text, values["failed"])),
@@ -119,6 +132,13 @@ def _facts(values: Mapping[str, Any]) -> Facts:
 
 def _text(value: object) -> str:
     if not isinstance(value, str):
+        raise TypeError
+    return value
+
+
+def _number(value: object) -> float:
+    """As it is, so that it is written as before: 3 does not become 3.0."""
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value):
         raise TypeError
     return value
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
 from deltacam.batch.folder import ResultFolder, hold, is_full, library_of, share_plotly
 from deltacam.batch.index import to_html
+from deltacam.batch.key import key_of, sha256
 from deltacam.batch.listing import to_csv, to_json
 from deltacam.batch.parts import Batch, Outcome, Part, Result, Row, Status, Stored, Task
 from deltacam.batch.record import Record, Recorded
-from deltacam.batch.task import key_of, sha256
 from deltacam.drawing.dxf.document import read_bytes
 from deltacam.errors import DeltacamError, ProgramError
 
@@ -24,8 +25,8 @@ SUMMARIES = {"batch.json": to_json, "batch.csv": to_csv, "index.html": to_html}
 class Planner(Protocol):
     """What plans: processes of this machine, or of a cluster."""
 
-    def __call__(self, tasks: Iterator[Task], *, stop: threading.Event) -> Iterator[tuple[Task, Result]]:
-        """What becomes of every task, in any order, until ``stop`` is set."""
+    def __call__(self, tasks: Iterator[Task], *, stop: threading.Event) -> Generator[tuple[Task, Result]]:
+        """What becomes of every task, in any order, until ``stop`` is set; what plans ends when this is closed."""
 
 
 def run(
@@ -61,17 +62,35 @@ def run(
     """
     stop = stop or threading.Event()
     with hold(output) as folder:
-        state = _Run(folder, Record(folder), {part.name: part for part in parts}, stop, tell)
+        record = Record(folder)
+        state = _Run(folder, record, {part.name: part for part in parts}, stop, tell)
         for name in SUMMARIES:
             folder.remove(name)
         share_plotly(folder)
         state.begin(force=force)
-        for task, result in planner(state.tasks(), stop=stop):
-            state.store(task, result)
+        with closing(planner(state.tasks(), stop=stop)) as results:
+            for task, result in results:
+                state.store(task, result)
         batch = state.end(notes)
-        for name, write in SUMMARIES.items():
-            folder.write(name, write(batch).encode())
+        _summarize(folder, batch)
+        with suppress(ProgramError):  # the lines that were appended say the same
+            record.compact()
         return batch
+
+
+def _summarize(folder: ResultFolder, batch: Batch) -> None:
+    """Write what became of all parts, or nothing.
+
+    Raises:
+        ProgramError: the operating system refuses.
+    """
+    try:
+        for name, write in SUMMARIES.items():
+            folder.write(name, write(batch).encode(errors="backslashreplace"))
+    except ProgramError:
+        for name in SUMMARIES:
+            folder.remove(name)
+        raise
 
 
 class _Run:
@@ -101,14 +120,15 @@ class _Run:
     def begin(self, *, force: bool) -> None:
         """Find out what is there already, and remove what was made from something else."""
         for name, part in sorted(self._parts.items()):
+            if self._stop.is_set():
+                return
             data = self._read(part)
             if data is None:
                 continue
             found = self._record.parts.get(name)
-            if found and not force and self._is_there(found, key_of(part, data)):
+            if found and not force and self._is_there(part, found, key_of(part, data)):
                 self._keep(part, found, data)
-            else:
-                self._folder.clear(part)
+            elif self._clear(part):
                 self._todo.append((len(data), name))
 
     def tasks(self) -> Iterator[Task]:
@@ -128,7 +148,9 @@ class _Run:
             if outcome.status.lasts:
                 self._record.add(task.name, Recorded(task.key, outcome, files))
         except ProgramError as problem:
-            outcome = replace(outcome, status=Status.UNWRITTEN, what=problem.what, where="", hint=problem.hint)
+            with suppress(ProgramError):
+                self._folder.clear(part)
+            files, outcome = (), _unwritten(outcome, problem)
             if is_full(problem):
                 self._why_left = "the batch was stopped because the disk is full"
                 self._stop.set()
@@ -140,7 +162,6 @@ class _Run:
             if name not in self._rows:
                 self._put(Row(name, part.quantity, Outcome(Status.LEFT, self._why_left, hint="run it again")))
         others = sorted(name for name, found in self._record.parts.items() if found.files and name not in self._parts)
-        self._record.compact()
         left_over = [f"not of this batch, but of an earlier one: {', '.join(others)}"] if others else []
         return Batch(tuple(self._rows[name] for name in sorted(self._rows)), (*notes, *left_over))
 
@@ -149,12 +170,23 @@ class _Run:
         try:
             return read_bytes(part.path)
         except DeltacamError as problem:
-            self._folder.clear(part)
-            self._put(Row(part.name, part.quantity, Outcome(Status.REFUSED, problem.what, hint=problem.hint)))
+            if self._clear(part):
+                self._put(Row(part.name, part.quantity, Outcome(Status.REFUSED, problem.what, hint=problem.hint)))
             return None
 
-    def _is_there(self, found: Recorded, key: str) -> bool:
-        return found.key == key and found.outcome.status.lasts and self._folder.holds(found.files)
+    def _is_there(self, part: Part, found: Recorded, key: str) -> bool:
+        status = found.outcome.status
+        return found.key == key and status.lasts and self._folder.holds(part, status, found.files)
+
+    def _clear(self, part: Part) -> bool:
+        """Whether nothing of a part is left; where something is, that is what became of it."""
+        self._record.forget(part.name)
+        try:
+            self._folder.clear(part)
+        except ProgramError as problem:
+            self._put(Row(part.name, part.quantity, _unwritten(Outcome(Status.UNWRITTEN), problem)))
+            return False
+        return True
 
     def _keep(self, part: Part, found: Recorded, data: bytes) -> None:
         row = Row(part.name, part.quantity, found.outcome, found.files, sha256(data), found.key, again=True)
@@ -163,3 +195,8 @@ class _Run:
     def _put(self, row: Row) -> None:
         self._rows[row.part] = row
         self._tell(row)
+
+
+def _unwritten(outcome: Outcome, problem: ProgramError) -> Outcome:
+    """Without the path, so that it is the same wherever the folder lies."""
+    return replace(outcome, status=Status.UNWRITTEN, what=problem.what, where="", hint=problem.hint)

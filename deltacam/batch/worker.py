@@ -12,7 +12,8 @@ import struct
 import sys
 import threading
 from collections.abc import Iterator
-from typing import IO, Final
+from contextlib import contextmanager
+from typing import IO, Final, NoReturn
 
 _HEAD: Final = struct.Struct("<Q")
 READY: Final = b"ready"
@@ -54,10 +55,41 @@ def limit_memory(size: int) -> None:
         resource.setrlimit(resource.RLIMIT_DATA, (size, size))
 
 
-def main(memory: int | None) -> None:
+def leave_no_core() -> None:
+    """Let a crash leave no image of the memory in the current folder, which is the user's."""
+    if sys.platform != "win32":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+@contextmanager
+def ending_with(stream: IO[bytes]) -> Iterator[None]:
+    """Within the block the process ends as soon as the stream does, also where Python does not get its turn: Linux.
+
+    Nothing may come through the stream meanwhile.
+    """
+    if sys.platform != "linux":
+        yield
+        return
+    import fcntl
+    import signal
+
+    signal.signal(signal.SIGIO, signal.SIG_DFL)  # ends the process
+    fcntl.fcntl(stream, fcntl.F_SETOWN, os.getpid())
+    flags = fcntl.fcntl(stream, fcntl.F_GETFL)
+    fcntl.fcntl(stream, fcntl.F_SETFL, flags | os.O_ASYNC)
+    try:
+        yield
+    finally:
+        fcntl.fcntl(stream, fcntl.F_SETFL, flags)
+
+
+def main(memory: int | None) -> NoReturn:
     """Plan what comes until nothing comes any more."""
     tasks, results = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints must not come between the results
+    leave_no_core()
     if memory is not None:
         limit_memory(memory)
     from deltacam.batch.parts import Result, Status
@@ -65,10 +97,13 @@ def main(memory: int | None) -> None:
 
     send(results, READY)
     for message in _messages(tasks):
-        result: Result = perform(pickle.loads(message))  # noqa: S301 - from our own parent, through a pipe
-        send(results, pickle.dumps(result))
+        with ending_with(tasks):
+            result: Result = perform(pickle.loads(message))  # noqa: S301 - from our own parent, through a pipe
+            answer = pickle.dumps(result)
+        send(results, answer)
         if result.outcome.status is Status.MEMORY:
-            return  # a fresh process has its memory in one piece
+            break  # a fresh process has its memory in one piece
+    os._exit(0)  # not by way of Python's own end, for which the thread that listens would have to end first
 
 
 def _messages(stream: IO[bytes]) -> Iterator[bytes]:

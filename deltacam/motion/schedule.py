@@ -21,6 +21,7 @@ import numpy as np
 
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
+from deltacam.machine import cores
 from deltacam.model import Corner, Curve
 from deltacam.motion.corners import Pace, pieces
 from deltacam.motion.parametrize import UndrivableError, load_solver
@@ -112,8 +113,7 @@ def schedule(
         RobotError: a move leaves the reach.
     """
     chunks = list(_chunks(moves))
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    processes = min(jobs or (cores if len(chunks) >= _PAYS else 1), len(chunks))
+    processes = min(jobs or (cores() if len(chunks) >= _PAYS else 1), len(chunks))
     runs: list[Run] = []
     with _workers(processes) as run_all:
         for found in run_all(partial(_run_chunk, robot, _few(chunks) if what_if is None else what_if), chunks):
