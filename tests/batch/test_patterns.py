@@ -113,6 +113,7 @@ NAMES = ["brackets/left.dxf", "brackets/right.dxf", "gear.dxf"]
         ("bracket/*.dxf", "brackets/*.dxf"),
         ("parts/brackets/*.dxf", "brackets/*.dxf"),
         ("parts/gear.dxf", "gear.dxf"),
+        ("parts/*.dxf", "*.dxf"),
         ("gaer.dxf", "gear.dxf"),
         ("rihgt.dxf", "right.dxf"),
         ("brackets/rihgt.dxf", "brackets/right.dxf"),
@@ -126,7 +127,6 @@ def test_for_a_pattern_that_fits_nothing_one_that_does_is_suggested(pattern: str
 
 def test_nothing_is_suggested_for_what_is_like_nothing() -> None:
     assert suggestion("zz*", NAMES) == "there is brackets/left.dxf, brackets/right.dxf, gear.dxf"
-    assert suggestion("parts/*.dxf", NAMES).startswith("there is ")
     assert suggestion("zz*", []) == "there is no drawing"
 
 

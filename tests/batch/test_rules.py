@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ from hypothesis import strategies as st
 from deltacam.batch.rules import FILE, MOST, Rule, Rules, Wanted, find_rules, read
 from deltacam.errors import DeltacamError
 from deltacam.units import METRES_PER
+
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "batch-file.md").read_text(encoding="utf-8")
 
 
 def write(folder: Path, text: str) -> Path:
@@ -167,3 +170,20 @@ def test_a_file_of_another_name_is_named_in_messages(tmp_path: Path) -> None:
     with pytest.raises(DeltacamError) as refused:
         read(path)
     assert (refused.value.where, refused.value.hint) == (f"{path} [part 1]", "name it as seen from tonight.toml")
+
+
+def test_every_key_has_its_row_in_the_reference(tmp_path: Path) -> None:
+    with pytest.raises(DeltacamError) as refused:
+        read(write(tmp_path, "[[part]]\npattern = 'a'\nzz = 1\n"))
+    for key in refused.value.hint.removeprefix("known: ").split(", "):
+        assert f"\n| `{key}` | " in PAGE
+    assert f"| `quantity` | 1 to {MOST} |" in PAGE
+
+
+def test_the_example_of_the_reference_does_what_is_said_there(tmp_path: Path) -> None:
+    example = re.search(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
+    assert example
+    rules = read(write(tmp_path, example[1]))
+    assert rules.settings_of("acrylic/left.dxf") == Wanted(process="acrylic-3mm-co2", quantity=12)
+    assert rules.settings_of("acrylic/old/lid-inch.dxf") == Wanted(process="acrylic-3mm-co2", units="in", quantity=4)
+    assert rules.settings_of("left.dxf") == Wanted()
