@@ -34,6 +34,7 @@ MAY_IMPORT = {
         "plain",
         "units",
         "settings",
+        "defaults",
         "model",
         "geometry",
         "drawing",
