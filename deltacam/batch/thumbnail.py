@@ -35,7 +35,7 @@ def thumbnail(drawing: Drawing) -> Lines:
     lines: Lines = ()
     for tolerance in _TOLERANCES:
         places = [np.rint((line - origin) / step).astype(np.int64) for line in thin_lines(flat, tolerance * step)]
-        lines = tuple(dict.fromkeys(line for line in map(_written, places) if len(line) > 2))
+        lines = tuple(dict.fromkeys(map(_written, places)))
         if sum(map(len, lines)) <= MOST_NUMBERS:
             return lines
     return _longest(lines)
@@ -48,8 +48,9 @@ def to_svg(lines: Lines) -> str:
     """
     width, height = (max((max(line[axis::2]) for line in lines), default=SPAN) for axis in (0, 1))
     box = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
-    closed = "".join(_path(line[:-2], height) + "z" for line in lines if line[:2] == line[-2:])
-    others = "".join(_path(line, height) for line in lines if line[:2] != line[-2:])
+    rings = [len(line) > 4 and line[:2] == line[-2:] for line in lines]
+    closed = "".join(_path(line[:-2], height) + "z" for line, ring in zip(lines, rings, strict=True) if ring)
+    others = "".join(_path(line, height) for line, ring in zip(lines, rings, strict=True) if not ring)
     area = f'<path class="area" d="{closed}"/>' if closed else ""
     open_ones = f'<path d="{others}"/>' if others else ""
     return f'<svg viewBox="{box}" aria-hidden="true">{area}{open_ones}</svg>'
@@ -68,9 +69,10 @@ def _points(curve: Curve, step: float) -> Array:
 
 
 def _written(places: Array) -> tuple[int, ...]:
-    """The line without points that lie on the one before."""
+    """The line without points that lie on the one before; a point, which a tiny hole becomes, is there twice."""
     kept = np.any(np.diff(places, axis=0, prepend=places[:1] - 1) != 0, axis=1)
-    return tuple(map(int, places[kept].ravel()))
+    numbers = tuple(map(int, places[kept].ravel()))
+    return numbers if len(numbers) > 2 else numbers * 2
 
 
 def _longest(lines: Lines) -> Lines:
