@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from deltacam.defaults import Defaults
 
 PATH: Final = click.Path(path_type=Path)
-_MACHINES: Final = ("jobs", "time_limit", "memory")
+_MACHINES: Final = ("jobs", "time_limit", "memory", "scheduler", "tls_ca", "tls_cert", "tls_key")
 _HOW: Final = ("at", "rotate", "place", "dry_run", "frame", "what_if")
 _TIME: Final = (1.0, 7 * 86400.0)
 _MEMORY: Final = (500e6, 1e15)
@@ -44,6 +44,10 @@ _MEMORY: Final = (500e6, 1e15)
 @click.option("--time-limit", default="10min", show_default=True, help="What a part may take: 90s, 10min, none.")
 @click.option("--memory", metavar="SIZE", help="What a process may take: 2GB, none; else its share of the machine's.")
 @click.option("--force", is_flag=True, help="Plan also what is there and has not changed.")
+@click.option("--scheduler", metavar="ADDRESS", help="Plan on a Dask cluster: tcp://host:8786, or tls://...")
+@click.option("--tls-ca", metavar="FILE", type=PATH, help="For tls://: the certificate of your own authority.")
+@click.option("--tls-cert", metavar="FILE", type=PATH, help="For tls://: our certificate.")
+@click.option("--tls-key", metavar="FILE", type=PATH, help="For tls://: our key.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the summary.")
 def command(
     folder: Path,
@@ -149,10 +153,7 @@ def _settings(own: Defaults, wanted: Wanted, file: str, values: Mapping[str, Any
 
 @contextmanager
 def _planner(
-    *,
-    jobs: int | None,
-    time_limit: str,
-    memory: str | None,
+    *, jobs: int | None, time_limit: str, memory: str | None, scheduler: str | None, **tls: Path | None
 ) -> Iterator[Planner]:
     """What plans: processes here, or those of a cluster.
 
@@ -161,15 +162,30 @@ def _planner(
     """
     from deltacam.batch import local
     from deltacam.batch.parts import Limits
+    from deltacam.batch.scheduler import tls_of
     from deltacam.machine import cores, share_of_memory
 
-    processes = jobs or cores()
-    said = "from 1 s to 168 h"
-    time = options.bounded("--time-limit", time_limit, parse_duration, _TIME, said)
-    size = None if memory is None else options.bounded("--memory", memory, parse_memory, _MEMORY, "500 MB or more")
-    if memory is None:
-        size = share_of_memory(processes)
-    yield partial(local.results, jobs=processes, limits=Limits(time, size))
+    time = options.bounded("--time-limit", time_limit, parse_duration, _TIME, "from 1 s to 168 h")
+    own = None if memory is None else options.bounded("--memory", memory, parse_memory, _MEMORY, "500 MB or more")
+    files = tls_of(*(tls[name] for name in ("tls_ca", "tls_cert", "tls_key")))
+    if scheduler is None:
+        if files is not None:
+            raise click.UsageError("--tls-ca, --tls-cert and --tls-key are for --scheduler tls://...")
+        processes = jobs or cores()
+        size = share_of_memory(processes) if memory is None else own
+        yield partial(local.results, jobs=processes, limits=Limits(time, size))
+        return
+    from deltacam.batch.cluster import connect
+    from deltacam.batch.elsewhere import results
+
+    if jobs:
+        raise click.UsageError("--jobs is for this machine; a cluster plans as many parts as its workers have threads")
+    with connect(scheduler, tls=files, tell=_say) as cluster:
+        yield partial(results, cluster=cluster, limits=Limits(time, own), share_memory=memory is None)
+
+
+def _say(what: str) -> None:
+    click.echo(f"note: {what}", err=True)
 
 
 def _show(batch: Batch, output: Path, *, as_json: bool) -> None:

@@ -17,8 +17,13 @@ from deltacam.batch.parts import Limits, Outcome, Result, Status, Task
 from deltacam.errors import DeltacamError
 from deltacam.plain import plain
 
-_ONE_THREAD: Final = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""There is a process for every core already."""
+_ENVIRONMENT: Final = {
+    # There is a process for every core already.
+    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
+    # glibc keeps up to 256 MiB that an array has left for the next one. A worker of Dask lets it give back all above
+    # 64 kB at once, and the kernel then takes as long to clear pages as the planner takes to plan.
+    "MALLOC_TRIM_THRESHOLD_": str(2**28),
+}
 
 _ON_ITS_OWN: Final[dict[str, Any]] = (
     {"creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)}
@@ -168,7 +173,7 @@ def _start(memory: int | None, errors: IO[bytes]) -> subprocess.Popen[bytes]:
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=errors,
-        env={**os.environ, **_ONE_THREAD},
+        env={**os.environ, **_ENVIRONMENT},
         **_ON_ITS_OWN,
     )
 

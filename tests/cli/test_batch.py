@@ -154,6 +154,10 @@ def test_a_list_on_stdin_says_which_drawings(
         (("parts", "--memory", "1MB"), "--memory"),
         (("parts", "--robot", "unheard-of"), "unheard-of"),
         (("parts", "--dry-run", "--frame"), "exclude each other"),
+        (("parts", "--scheduler", "host"), "'host' is not the address of a scheduler"),
+        (("parts", "--scheduler", "tcp://127.0.0.1:1"), "no scheduler answers at tcp://127.0.0.1:1"),
+        (("parts", "--scheduler", "tls://127.0.0.1:1", "--tls-ca", "ca.pem"), "--tls-cert and --tls-key"),
+        (("parts", "--scheduler", "tcp://127.0.0.1:1", "--jobs", "2"), "--jobs is for this machine"),
         (("parts", "-o", "parts/disc.dxf"), "this is a file, not a folder"),
     ],
 )
