@@ -114,7 +114,7 @@ def _rules(file: Path | None, folder: Path) -> Rules:
 def _unused(rules: Rules, parts: Sequence[Part]) -> list[str]:
     """What a person should know of rules that say nothing about any part."""
     patterns = rules.unused([part.name for part in parts])
-    return [f"{rules.file}: no part of this batch is like {pattern!r}" for pattern in patterns]
+    return [f"{Path(rules.file).name}: no part of this batch is like {pattern!r}" for pattern in patterns]
 
 
 def _parts(found: Found, rules: Rules, values: Mapping[str, Any]) -> list[Part]:
