@@ -73,10 +73,9 @@ def _nearest(pattern: str, names: Sequence[str]) -> Iterator[str]:
     folders = sorted({name.rpartition("/")[0] for name in names} - {""})
     below = slashed.partition("/")[2]  # as seen from the folder that holds the folder of the batch
     others = [slashed, f"{slashed}/*"]
-    others += [below] if "/" in below or not set("*?") & set(below) else []
     others += [f"{near}/{last}" for near in difflib.get_close_matches(folder, folders)]
     if not set("*?") & set(slashed):
         others += difflib.get_close_matches(slashed, names)
         others += difflib.get_close_matches(slashed, [name.rpartition("/")[2] for name in names])
-    others += [f"{near}/*" for near in difflib.get_close_matches(slashed, folders)]
+    others += [*(f"{near}/*" for near in difflib.get_close_matches(slashed, folders)), below]
     return (other for other in others if other and any(matches(name, other) for name in names))

@@ -91,7 +91,7 @@ class WorkerProcess:
             running.kill()
 
     def _late(self, task: Task) -> Outcome:
-        return _ended(Status.TIMEOUT, task, f"not planned within {self._limits.time:g} s")
+        return ended(Status.TIMEOUT, task, f"not planned within {self._limits.time:g} s")
 
 
 class _Running:
@@ -207,7 +207,7 @@ def _crashed(running: _Running, task: Task) -> Outcome:
     try:
         code = running.process.wait(_ENDING)
     except subprocess.TimeoutExpired:
-        return _ended(Status.CRASHED, task, "its process stopped to answer")
+        return ended(Status.CRASHED, task, "its process stopped to answer")
     what, hint = f"its process ended with exit code {code}", "report it with the drawing"
     if code < 0:
         with suppress(ValueError):
@@ -216,10 +216,11 @@ def _crashed(running: _Running, task: Task) -> Outcome:
             hint = "the system may have run out of memory: plan fewer parts at a time with --jobs"
     words = running.last_words()
     if any(sign in words for sign in _OUT_OF_MEMORY):
-        return _ended(Status.MEMORY, task, worker.TOO_LITTLE)
-    return _ended(Status.CRASHED, task, f"{what}: {words}" if words else what, hint)
+        return ended(Status.MEMORY, task, worker.TOO_LITTLE)
+    return ended(Status.CRASHED, task, f"{what}: {words}" if words else what, hint)
 
 
-def _ended(status: Status, task: Task, what: str, hint: str = "") -> Outcome:
+def ended(status: Status, task: Task, what: str, hint: str = "") -> Outcome:
+    """The outcome of a part that nothing came of."""
     robot, process = (getattr(task.options.get(key), "name", "") for key in ("robot", "process"))
     return Outcome(status, what, hint=hint, robot=robot, process=process)
