@@ -238,6 +238,8 @@ def test_the_page_opens_with_every_part_in_sight(chromium: Browser, mixed: Path,
     chromium.open(mixed, width=width, dark=dark)
     assert len(visible(chromium)) == len(MIXED.rows)
     assert chromium.run("return document.documentElement.scrollWidth") <= width
+    cells = "return [...document.querySelectorAll('#parts td, #parts th')].map((c) => c.getBoundingClientRect().right)"
+    assert max(chromium.run(cells)) <= width
     assert chromium.run("return document.querySelector('#parts svg').getBoundingClientRect().width") == 80
     assert chromium.problems() == []
     assert chromium.requests() == {mixed.as_uri()}

@@ -13,6 +13,7 @@ from jsonschema import Draft202012Validator
 
 from deltacam.batch.listing import columns, to_csv, to_dict, to_json
 from deltacam.batch.parts import Batch, Outcome, Row, Status
+from deltacam.batch.totals import totals
 from tests.batch.rows import HOSTILE, facts, failed, passed, without
 
 DOCS = Path(__file__).parents[2] / "docs" / "reference"
@@ -57,8 +58,8 @@ def test_the_totals_count_the_parts_that_passed_as_often_as_they_are_wanted() ->
 
 
 def test_the_totals_do_not_depend_on_the_order() -> None:
-    rows = tuple(passed(f"{number}.dxf", facts=facts(time=0.1 * 3.0**number)) for number in range(20))
-    assert to_dict(Batch(rows))["totals"] == to_dict(Batch(rows[::-1]))["totals"]
+    rows = tuple(passed(f"{time}.dxf", facts=facts(time=time)) for time in (1e16, 1.0, 1.0))
+    assert totals(Batch(rows)) == totals(Batch(rows[::-1]))
 
 
 def test_every_part_is_there_with_all_that_is_known() -> None:

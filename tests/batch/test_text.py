@@ -54,7 +54,7 @@ def test_nothing_is_to_be_cut_where_nothing_passed() -> None:
 
 
 def test_parts_that_fail_for_one_reason_are_together_and_those_of_most_parts_come_first() -> None:
-    rows = [without("a.dxf", Status.FAULT, "a fault", hint="report it")]
+    rows = [failed("a.dxf", "part size")]
     rows += [
         without(f"{n}.dxf", Status.REFUSED, f"a gap of {n} mm at ({n}, 0) mm", where=f"layer {n}, #{n}", hint="join it")
         for n in range(1, 6)
