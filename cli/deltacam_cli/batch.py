@@ -78,7 +78,7 @@ def command(
     wanted = _rules(rules, folder)
     planner = _planner(**{name: values.pop(name) for name in _MACHINES})
     parts = _parts(found, wanted, values)
-    notes = [*found.notes, *_unused(wanted, parts)]
+    notes = [*_laser_off(values), *found.notes, *_unused(wanted, parts)]
     with planner as planned_by, PartsProgress(parts) as progress, stopping_cleanly() as stop:
         batch = run(parts, output, planner=planned_by, force=force, notes=notes, stop=stop.event, tell=progress)
     _show(batch, output, as_json=as_json)
@@ -109,6 +109,13 @@ def _rules(file: Path | None, folder: Path) -> Rules:
     from deltacam.batch import rules
 
     return rules.find_rules(folder) if file is None else rules.read(file)
+
+
+def _laser_off(values: Mapping[str, Any]) -> list[str]:
+    """What a person should know of programs that cut nothing."""
+    if values["frame"]:
+        return ["planned with --frame: every program traces a bounding box, with the laser off"]
+    return ["planned with --dry-run: the laser is off in every program"] if values["dry_run"] else []
 
 
 def _unused(rules: Rules, parts: Sequence[Part]) -> list[str]:

@@ -24,8 +24,11 @@ Lines = tuple[tuple[int, ...], ...]
 
 
 def thumbnail(drawing: Drawing) -> Lines:
-    """The contours of a drawing as lines through x, y, x, y, ..., whole numbers from 0 to `SPAN`, y up."""
-    drawn = [contour.curve for contour in drawing.contours]
+    """The contours of a drawing as lines through x, y, x, y, ..., whole numbers from 0 to `SPAN`, y up.
+
+    Where all of them are ignored, for instance because they do not close, it is these.
+    """
+    drawn = [contour.curve for contour in drawing.contours or drawing.ignored]
     if not drawn:
         return ()
     boxes = np.array([curves.bounds(curve) for curve in drawn])
