@@ -63,9 +63,9 @@ def read(path: Path) -> Defaults:
     try:
         table = read_table(path, error=DeltacamError)
         found = Defaults(
-            robot=_robot_or_process(table, "robot", path.parent),
-            process=_robot_or_process(table, "process", path.parent),
-            units=_units(table),
+            robot=name_or_file(table, "robot", path),
+            process=name_or_file(table, "process", path),
+            units=unit_name(table, "units"),
             joining=_joining(table),
         )
         table.finish()
@@ -74,27 +74,50 @@ def read(path: Path) -> Defaults:
     return replace(found, file=str(path))
 
 
-def _robot_or_process(table: Table, key: str, folder: Path) -> str | None:
-    """A built-in name as it is; what ends in ``.toml`` or holds a separator is a file."""
+def name_or_file(table: Table, key: str, path: Path) -> str | None:
+    """The robot or process that ``key`` names, as the readers of robots and processes take it.
+
+    A built-in name is left as it is; what ends in ``.toml`` or holds a separator is a file, as seen from the folder of
+    the settings.
+
+    Args:
+        table: of the settings file at ``path``.
+        key: where it is missing, the answer is None.
+        path: of the settings file.
+
+    Raises:
+        DeltacamError: it is not text, is empty, or is a file that is not there.
+    """
     if not table.has(key):
         return None
     name = table.text(key)
     if not name.lower().endswith(".toml") and Path(name).name == name:
         return name
-    file = folder / name
-    if not file.is_file():
-        raise table.problem(f"{key} = {name!r}: there is no such file", hint=f"name it as seen from {FILE}")
-    return str(file)
+    file = path.parent / name
+    try:
+        is_file = file.is_file()
+    except OSError as problem:
+        reason = (problem.strerror or str(problem)).lower()
+        raise table.problem(f"{key} = {name!r}: the file cannot be looked at: {reason}") from problem
+    if not is_file:
+        raise table.problem(f"{key} = {name!r}: there is no such file", hint=f"name it as seen from {path.name}")
+    # Without its folder, "./delta-300" would be the robot of that name.
+    return f"{os.curdir}{os.sep}{file}" if str(file) == file.stem else str(file)
 
 
-def _units(table: Table) -> str | None:
-    if not table.has("units"):
+def unit_name(table: Table, key: str) -> str | None:
+    """The name of the unit of length that ``key`` gives; None where it is missing.
+
+    Raises:
+        DeltacamError: it is not text, or there is no such unit.
+    """
+    if not table.has(key):
         return None
-    unit = table.text("units")
+    unit = table.text(key)
     try:
         metres_per(unit)
     except DeltacamError as problem:
-        raise table.problem(f"units: {problem.what}", hint=problem.hint) from problem
+        raise table.problem(f"{key}: {problem.what}", hint=problem.hint) from problem
     return unit
 
 

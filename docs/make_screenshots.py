@@ -10,6 +10,7 @@ import base64
 import shutil
 import tempfile
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -17,6 +18,9 @@ from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 
+from deltacam.batch.local import results
+from deltacam.batch.parts import Limits, Part
+from deltacam.batch.run import run
 from deltacam.cutting.process import load_process
 from deltacam.pipeline import plan_to_folder
 from deltacam.report.studies.workspace import study
@@ -29,6 +33,22 @@ FEED: Final = 0.5  # m/s
 SIZE: Final = (1200, 1290)  # pixels
 ROBOT: Final = "delta-300"
 STUDY_SIZE: Final = (1200, 740)
+BATCH_SIZE: Final = (1200, 1205)
+QUANTITIES: Final = {
+    "brackets/bottom-plate-spline-inch": 4,
+    "brackets/plate-solidworks-inch": 2,
+    "brackets/motor-lock-wrong-units": 2,
+    "brackets/wrench-inch": 10,
+    "gears/cycloidal-inch": 6,
+    "gears/gear": 12,
+    "gears/gear-unitless": 12,
+    "plates/chute-holder-lines": 1,
+    "plates/key-plate-bulge": 1,
+    "plates/nameplate": 25,
+    "plates/redox-top-dims": 2,
+    "plates/rational-spline-inch": 1,
+}
+"""Parts of the batch, in folders, and how many are wanted; the drawings are samples and those of the tests."""
 PLACE: Final = (87.5, 88.0)  # mm on the part, at which the mouse is
 SWITCHES: Final = ("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars")
 FIND: Final = """
@@ -52,8 +72,23 @@ def main() -> None:
             to_html(replace(shown, facts=(), charts=shown.charts[:1], tables=(), notes=())), encoding="utf-8"
         )
         workspace = screenshot(page, Path(scratch) / "another", STUDY_SIZE)
+        batch = screenshot(run_batch(Path(scratch) / "batch"), Path(scratch) / "third", BATCH_SIZE)
     (folder / "report.png").write_bytes(picture)
     (folder / "workspace.png").write_bytes(workspace)
+    (folder / "batch.png").write_bytes(batch)
+
+
+def run_batch(folder: Path) -> Path:
+    """The page of a batch of `QUANTITIES`, some of which are refused."""
+    root = SAMPLE.parents[1]
+    options = {"robot": load_robot(ROBOT), "process": load_process("steel-1mm-fibre"), "what_if": False}
+    parts = []
+    for name, quantity in QUANTITIES.items():
+        file = f"{Path(name).name}.dxf"
+        path = next(path for path in (root / "samples" / file, root / "tests" / "data" / "dxf" / file) if path.exists())
+        parts.append(Part(f"{name}.dxf", path, options, quantity))
+    run(parts, folder, planner=partial(results, jobs=2, limits=Limits()))
+    return folder / "index.html"
 
 
 def screenshot(

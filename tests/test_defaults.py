@@ -1,5 +1,6 @@
 """The user's own deltacam.toml."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,14 @@ def test_a_file_is_looked_for_beside_the_settings_and_a_name_is_left_alone(tmp_p
     assert getattr(read(write(tmp_path / "other", f"{key} = '{absolute}'\n")), key) == str(absolute)
 
 
+def test_a_file_called_like_a_built_in_robot_stays_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "delta-300").touch()
+    write(tmp_path, 'robot = "./delta-300"\nprocess = "delta-300"\n')
+    assert find([Path()]).robot == f".{os.sep}delta-300"
+    assert find([Path()]).process == "delta-300"
+
+
 @pytest.mark.parametrize("unit", METRES_PER)
 def test_every_unit_may_be_the_default(tmp_path: Path, unit: str) -> None:
     assert read(write(tmp_path, f'units = "{unit}"\n')).units == unit
@@ -58,6 +67,7 @@ def test_every_unit_may_be_the_default(tmp_path: Path, unit: str) -> None:
         ("robot = ' '", "robot is empty"),
         ("process = 'mine.toml'", "process = 'mine.toml': there is no such file"),
         ("robot = '../mine'", "robot = '../mine': there is no such file"),
+        (f"robot = '{'x' * 300}.toml'", "robot = .*: the file cannot be looked at: file name too long"),
         ("units = 'ell'", "units: unknown unit of length 'ell'"),
         ("units = 4", "units = 4 is not text"),
         ("joining_mm = 6", "joining_mm = 6 is outside 0.001 to 5"),

@@ -18,6 +18,7 @@ from deltacam.errors import DeltacamError
 COMMANDS: Final = {
     "inspect": "Show what is in DRAWING, and what plan would make of it.",
     "plan": "Plan DRAWING and verify the program.",
+    "batch": "Plan and verify every drawing in FOLDER.",
     "verify": "Verify PROGRAM, trusting nothing the planner said.",
     "export": "Write PROGRAM in another format.",
     "robot": "Study a robot: what it can do, where, and how exactly.",
@@ -83,6 +84,7 @@ def cli(traceback: bool) -> None:
     \b
     deltacam inspect part.dxf               shows what is in the drawing
     deltacam plan part.dxf                  writes part.program.csv and its reports
+    deltacam batch parts -o out             does that for every drawing in a folder
     deltacam verify part.program.csv        checks it again, independently
     deltacam export part.program.csv --to gcode
     deltacam robot show delta-300           shows what a robot can do

@@ -196,6 +196,10 @@ class Row:
     key: str = ""
     again: bool = False
 
+    def file(self, ending: str) -> str:
+        """The name of the file with that ending; empty where there is none."""
+        return next((file.name for file in self.files if file.name.endswith(ending)), "")
+
 
 @dataclass(frozen=True, slots=True)
 class Batch:

@@ -17,8 +17,13 @@ from deltacam.batch.parts import Limits, Outcome, Result, Status, Task
 from deltacam.errors import DeltacamError
 from deltacam.plain import plain
 
-_ONE_THREAD: Final = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""There is a process for every core already."""
+_ENVIRONMENT: Final = {
+    # There is a process for every core already.
+    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
+    # glibc keeps up to 256 MiB that an array has left for the next one. A worker of Dask lets it give back all above
+    # 64 kB at once, and the kernel then takes as long to clear pages as the planner takes to plan.
+    "MALLOC_TRIM_THRESHOLD_": str(2**28),
+}
 
 _ON_ITS_OWN: Final[dict[str, Any]] = (
     {"creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)}
@@ -91,7 +96,7 @@ class WorkerProcess:
             running.kill()
 
     def _late(self, task: Task) -> Outcome:
-        return _ended(Status.TIMEOUT, task, f"not planned within {self._limits.time:g} s")
+        return ended(Status.TIMEOUT, task, f"not planned within {self._limits.time:g} s")
 
 
 class _Running:
@@ -168,7 +173,7 @@ def _start(memory: int | None, errors: IO[bytes]) -> subprocess.Popen[bytes]:
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=errors,
-        env={**os.environ, **_ONE_THREAD},
+        env={**os.environ, **_ENVIRONMENT},
         **_ON_ITS_OWN,
     )
 
@@ -207,7 +212,7 @@ def _crashed(running: _Running, task: Task) -> Outcome:
     try:
         code = running.process.wait(_ENDING)
     except subprocess.TimeoutExpired:
-        return _ended(Status.CRASHED, task, "its process stopped to answer")
+        return ended(Status.CRASHED, task, "its process stopped to answer")
     what, hint = f"its process ended with exit code {code}", "report it with the drawing"
     if code < 0:
         with suppress(ValueError):
@@ -216,10 +221,11 @@ def _crashed(running: _Running, task: Task) -> Outcome:
             hint = "the system may have run out of memory: plan fewer parts at a time with --jobs"
     words = running.last_words()
     if any(sign in words for sign in _OUT_OF_MEMORY):
-        return _ended(Status.MEMORY, task, worker.TOO_LITTLE)
-    return _ended(Status.CRASHED, task, f"{what}: {words}" if words else what, hint)
+        return ended(Status.MEMORY, task, worker.TOO_LITTLE)
+    return ended(Status.CRASHED, task, f"{what}: {words}" if words else what, hint)
 
 
-def _ended(status: Status, task: Task, what: str, hint: str = "") -> Outcome:
+def ended(status: Status, task: Task, what: str, hint: str = "") -> Outcome:
+    """The outcome of a part that nothing came of."""
     robot, process = (getattr(task.options.get(key), "name", "") for key in ("robot", "process"))
     return Outcome(status, what, hint=hint, robot=robot, process=process)

@@ -100,7 +100,7 @@ def _read(path: Path) -> dict[str, Recorded]:
     found: dict[str, Recorded] = {}
     for line in lines:
         with suppress(*_NOT_OURS):
-            values = json.loads(line)
+            values = json.loads(line, parse_constant=_refuse)
             found[_text(values["part"])] = _recorded(values)
     return found
 
@@ -128,6 +128,11 @@ def _facts(values: Mapping[str, Any]) -> Facts:
         checks=_whole(values["checks"]),
         failed=tuple(map(_text, values["failed"])),
     )
+
+
+def _refuse(constant: str) -> float:
+    """No figure of ours is NaN or infinite."""
+    raise ValueError(constant)
 
 
 def _text(value: object) -> str:

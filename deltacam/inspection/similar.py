@@ -11,8 +11,11 @@ _VARYING: Final = re.compile(rf"\({_NUMBER}, {_NUMBER}\)|#[0-9A-Za-z]+|{_NUMBER}
 
 
 def pattern(sentence: str) -> str:
-    """The sentence without what may vary: equal for sentences that say the same of different things."""
-    return _VARYING.sub("\0", sentence)
+    """The sentence without what may vary: equal for sentences that say the same of different things.
+
+    A null character and its kind stand for what varies, so that a number is not taken for a handle in its place.
+    """
+    return _VARYING.sub(lambda found: f"\0{_kind(found[0])}", sentence.replace("\0", "\0\0"))
 
 
 def summary(sentences: Iterable[str]) -> str:
@@ -28,9 +31,14 @@ def summary(sentences: Iterable[str]) -> str:
     return "".join(part + more for part, more in zip(parts, [*told, ""], strict=True))
 
 
+def _kind(value: str) -> str:
+    """A bracket for a place, the sign for a handle, a nought for a number."""
+    return value[0] if value[0] in "(#" else "0"
+
+
 def _together(values: tuple[str, ...]) -> str:
     if len(set(values)) == 1:
         return values[0]
-    if values[0][0] in "(#":
+    if _kind(values[0]) != "0":
         return f"{values[0]} ..."
     return f"{min(values, key=float)} to {max(values, key=float)}"

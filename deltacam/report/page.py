@@ -14,23 +14,33 @@ from importlib import resources
 from typing import Final
 
 _SCRIPTS: Final = ("series.js", "overlay.js", "pictures.js", "charts.js", "page.js")
+_SHEETS: Final = ("page.css",)
 
 
 def frame(
-    *, title: str, style: str, body: str, data: str, library: str | None, scripts: tuple[str, ...] = _SCRIPTS
+    *,
+    title: str,
+    style: str,
+    body: str,
+    data: str,
+    library: str | None,
+    scripts: tuple[str, ...] = _SCRIPTS,
+    sheets: tuple[str, ...] = _SHEETS,
 ) -> str:
     """The whole page.
 
     Args:
         title: of the window, HTML.
-        style: rules besides those of the page's own style sheet.
+        style: rules besides those of the style sheets.
         body: HTML.
         data: JSON for the script, in which nothing opens or closes an element.
-        library: where a copy of `plotly_js` lies, relative to the page; None puts it into the page.
+        library: where a copy of `plotly_js` lies, relative to the page; None puts it into the page, and an empty text
+            is for a page that does without.
         scripts: ours, by the names of their files.
+        sheets: our style sheets, likewise.
     """
     own = _script(scripts)
-    inside = (own,) if library else (plotly_js(), own)
+    inside = (plotly_js(), own) if library is None else (own,)
     elements = "\n".join(f"<script>{script}</script>" for script in inside)
     if library:
         elements = f'<script src="{escape(library)}"></script>\n{elements}'
@@ -39,7 +49,7 @@ def frame(
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(inside, shared=bool(library))}">\n'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<meta name="color-scheme" content="light dark">\n'
-        f"<title>{title}</title>\n<style>{_resource('page.css')}{style}</style>\n</head>\n"
+        f"<title>{title}</title>\n<style>{''.join(map(_resource, sheets))}{style}</style>\n</head>\n"
         f"<body>\n{body}"
         f'<script type="application/json" id="data">{data}</script>\n{elements}\n</body>\n</html>\n'
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 DXF = Path(__file__).parent.parent / "data" / "dxf"
-HEAVY = ("toppra", "matplotlib", "ezdxf", "shapely", "scipy", "plotly", "numpy")
+HEAVY = ("toppra", "matplotlib", "ezdxf", "shapely", "scipy", "plotly", "numpy", "distributed", "filelock")
 
 
 def deltacam(*arguments: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:

@@ -27,6 +27,10 @@ def test_what_is_the_same_in_all_sentences_stays() -> None:
         ("duplicate of #2F", "duplicate of #ABC", True),
         ("layer A1", "layer A2", False),
         ("open from (1, 2)", "open from (3, 4.5)", True),
+        ("layer 5", "layer #A", False),
+        ("layer 5", "layer \0", False),
+        ("layer 5", "layer \x000", False),
+        ("layer #5", "layer (1, 2)", False),
     ],
 )
 def test_sentences_are_alike_when_only_numbers_places_and_handles_differ(one: str, other: str, alike: bool) -> None:
