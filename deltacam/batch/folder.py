@@ -90,6 +90,10 @@ class ResultFolder:
         except OSError as problem:
             raise _refused(problem, "the file of an earlier run cannot be removed", path) from problem
 
+    def has_any(self, files: Sequence[Stored]) -> bool:
+        """Whether at least one file of these names is there."""
+        return any(os.path.lexists(self.path / file.name) for file in files)
+
     def holds(self, part: Part, status: Status, files: Sequence[Stored]) -> bool:
         """Whether these are all files of a part that ended like this, and are there with the content that they had."""
         expected = [part.stem + ending for ending in _ENDINGS_OF.get(status, ())]

@@ -32,8 +32,8 @@ _ON_ITS_OWN: Final[dict[str, Any]] = (
 )
 """Ctrl-C on the terminal is for us and not for it."""
 
-_OUT_OF_MEMORY: Final = ("MemoryError", "bad_alloc")
-"""What Python and C++ say when they end for want of memory."""
+_OUT_OF_MEMORY: Final = ("MemoryError", "bad_alloc", "Memory allocation still failed")
+"""What Python, C++ and OpenBLAS say when they end for want of memory."""
 
 _LONGEST: Final = 300  # characters of what a process said last
 _STARTING: Final = 300.0  # s that a process may take to get ready

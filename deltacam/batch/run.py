@@ -45,7 +45,7 @@ def run(
     not planned again.
 
     Args:
-        parts: of different names.
+        parts: of different names, also without their endings.
         output: the folder of results; made where it is missing.
         planner: plans.
         force: plan also what is there.
@@ -57,13 +57,14 @@ def run(
         a row for every part.
 
     Raises:
-        DeltacamError: the folder cannot be used, or nothing can be planned at all; what was done by then is there, and
-            the next run does the rest.
+        DeltacamError: two parts would have the same files, the folder cannot be used, or nothing can be planned at
+            all; what was done by then is there, and the next run does the rest.
     """
     stop = stop or threading.Event()
+    by_name = _by_name(parts)
     with hold(output) as folder:
         record = Record(folder)
-        state = _Run(folder, record, {part.name: part for part in parts}, stop, tell)
+        state = _Run(folder, record, by_name, stop, tell)
         for name in SUMMARIES:
             folder.remove(name)
         share_plotly(folder)
@@ -76,6 +77,17 @@ def run(
         with suppress(ProgramError):  # the lines that were appended say the same
             record.compact()
         return batch
+
+
+def _by_name(parts: Sequence[Part]) -> dict[str, Part]:
+    """Raises DeltacamError where the files of one part would take the place of those of another."""
+    owners: dict[str, str] = {}
+    for part in parts:
+        if part.stem in owners:
+            what = f"{owners[part.stem]!r} and {part.name!r} would have the same files"
+            raise DeltacamError(what, hint="rename one of them")
+        owners[part.stem] = part.name
+    return {part.name: part for part in parts}
 
 
 def _summarize(folder: ResultFolder, batch: Batch) -> None:
@@ -161,7 +173,10 @@ class _Run:
         for name, part in self._parts.items():
             if name not in self._rows:
                 self._put(Row(name, part.quantity, Outcome(Status.LEFT, self._why_left, hint="run it again")))
-        others = sorted(name for name, found in self._record.parts.items() if found.files and name not in self._parts)
+        for name in [name for name in self._record.parts if name not in self._parts]:
+            if not self._folder.has_any(self._record.parts[name].files):
+                self._record.forget(name)
+        others = sorted(self._record.parts.keys() - self._parts.keys())
         left_over = [f"not of this batch, but of an earlier one: {', '.join(others)}"] if others else []
         return Batch(tuple(self._rows[name] for name in sorted(self._rows)), (*notes, *left_over))
 

@@ -13,8 +13,23 @@ from deltacam.drawing.reader import read_drawing
 from deltacam.errors import DeltacamError
 from deltacam.model import Report
 
-_OUT_OF_MEMORY: Final = "bad_alloc"
-"""What a library in C++ says."""
+_OUT_OF_MEMORY: Final = ("bad_alloc", "failed to map segment", "annot allocate memory")
+"""What libraries in C++, and the loader of libraries, say."""
+
+_SMALL: Final = (
+    b"0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n"
+    b"0\nCIRCLE\n8\n0\n10\n0.0\n20\n0.0\n40\n2.0\n0\nENDSEC\n0\nEOF\n"
+)
+"""A drawing of a disc."""
+
+
+def get_ready() -> None:
+    """Plan a small part, so that all libraries are loaded and have the memory that they keep.
+
+    The routines for matrices do not say that they got no memory, they try for ever: so they get theirs before there is
+    a limit.
+    """
+    pipeline.reports_of(pipeline.plan("ready.dxf", data=_SMALL, jobs=1, what_if=False), library="")
 
 
 def perform(task: Task) -> Result:
@@ -38,7 +53,7 @@ def perform(task: Task) -> Result:
 def _is_for_want_of_memory(problem: BaseException | None) -> bool:
     """Whether that is what began it, whatever was made of it on the way."""
     while problem is not None:
-        if isinstance(problem, MemoryError) or _OUT_OF_MEMORY in str(problem):
+        if isinstance(problem, MemoryError) or any(sign in str(problem) for sign in _OUT_OF_MEMORY):
             return True
         problem = problem.__cause__ or problem.__context__
     return False

@@ -90,13 +90,16 @@ def main(memory: int | None) -> NoReturn:
     tasks, results = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints must not come between the results
     leave_no_core()
+    messages = listen(tasks)
+    from deltacam.batch.parts import Result, Status
+    from deltacam.batch.task import get_ready, perform
+
+    get_ready()
     if memory is not None:
         limit_memory(memory)
-    from deltacam.batch.parts import Result, Status
-    from deltacam.batch.task import perform
-
     send(results, READY)
-    for message in _messages(tasks):
+    while True:
+        message = messages.get()
         with ending_with(tasks):
             result: Result = perform(pickle.loads(message))  # noqa: S301 - from our own parent, through a pipe
             answer = pickle.dumps(result)
@@ -106,11 +109,11 @@ def main(memory: int | None) -> NoReturn:
     os._exit(0)  # not by way of Python's own end, for which the thread that listens would have to end first
 
 
-def _messages(stream: IO[bytes]) -> Iterator[bytes]:
+def listen(stream: IO[bytes]) -> queue.SimpleQueue[bytes]:
     """What comes through the stream; the process ends where the stream does, also while it is planning."""
     waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
 
-    def listen() -> None:
+    def receive_all() -> None:
         try:
             while (message := receive(stream)) is not None:
                 waiting.put(message)
@@ -118,9 +121,8 @@ def _messages(stream: IO[bytes]) -> Iterator[bytes]:
             os.write(2, b"MemoryError\n")
         os._exit(1)
 
-    threading.Thread(target=listen, daemon=True).start()
-    while True:
-        yield waiting.get()
+    threading.Thread(target=receive_all, daemon=True).start()
+    return waiting
 
 
 if __name__ == "__main__":

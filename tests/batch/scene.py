@@ -1,0 +1,107 @@
+"""Small drawings, and folders of results to look into, for the tests of a batch."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Generator, Iterator, Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final
+
+from deltacam.batch.parts import Part, Result, Task
+from deltacam.batch.task import perform
+from deltacam.cutting.process import load_process
+from deltacam.errors import DeltacamError
+from deltacam.program.formats import read_program
+from deltacam.report.page import plotly_js
+from deltacam.robot.reader import load_robot
+
+OPTIONS: Final[Mapping[str, Any]] = {
+    "robot": load_robot("delta-300"),
+    "process": load_process("steel-1mm-fibre"),
+    "what_if": False,
+}
+
+
+def plate(path: Path, *, width: float = 12.0, holes: int = 0) -> Path:
+    """A drawing, mm: a rectangle 8 mm high with holes in a row; it is planned within half a second."""
+    corners = [(0.0, 0.0), (width, 0.0), (width, 8.0), (0.0, 8.0)]
+    shapes = [
+        f"0\nLINE\n8\nCUT\n10\n{ax}\n20\n{ay}\n11\n{bx}\n21\n{by}\n"
+        for (ax, ay), (bx, by) in zip(corners, [*corners[1:], corners[0]], strict=True)
+    ]
+    shapes += [f"0\nCIRCLE\n8\nCUT\n10\n{width * (n + 1) / (holes + 1)}\n20\n4.0\n40\n1.0\n" for n in range(holes)]
+    return written(path, "".join(shapes))
+
+
+def bow_tie(path: Path) -> Path:
+    """A drawing that is refused: its outline crosses itself."""
+    corners = [(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0), (0.0, 0.0)]
+    pairs = pairwise(corners)
+    return written(path, "".join(f"0\nLINE\n8\nCUT\n10\n{a}\n20\n{b}\n11\n{c}\n21\n{d}\n" for (a, b), (c, d) in pairs))
+
+
+def written(path: Path, entities: str) -> Path:
+    """A drawing of these entities, mm."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    header = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n"
+    path.write_text(f"{header}0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n")
+    return path
+
+
+def parts_of(folder: Path, **options: Any) -> list[Part]:
+    """The drawings of a folder, with options besides `OPTIONS`."""
+    given = {**OPTIONS, **options}
+    return [Part(path.relative_to(folder).as_posix(), path, given) for path in sorted(folder.rglob("*.dxf"))]
+
+
+def plan_here(tasks: Iterator[Task], *, stop: threading.Event) -> Generator[tuple[Task, Result]]:
+    """A planner without processes of its own."""
+    for task in tasks:
+        if stop.is_set():
+            return
+        yield task, perform(task)
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    """Every file of a folder of results but the lock."""
+    files = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def damage(folder: Path) -> list[str]:
+    """What is not as it should be in a folder of results, whatever happened to the batch: nothing."""
+    found = []
+    for path in folder.rglob("*"):
+        name = path.relative_to(folder).as_posix()
+        if path.is_dir() or name.startswith(".deltacam-batch/"):
+            continue
+        if (problem := _problem(path)) is not None:
+            found.append(f"{name}: {problem}")
+    return found
+
+
+def _problem(path: Path) -> str | None:
+    """Why a file is not whole."""
+    stem = path.name.split(".")[0]
+    if path.name.endswith(".program.csv"):
+        try:
+            read_program(path)  # compares the SHA-256 that is in it
+        except DeltacamError as problem:
+            return str(problem)
+        reports = [path.with_name(f"{stem}.report{ending}") for ending in (".json", ".html")]
+        return None if all(report.exists() for report in reports) else "a program without its reports"
+    content = path.read_bytes().decode()
+    if path.suffix == ".json":
+        try:
+            json.loads(content)
+        except ValueError as problem:
+            return str(problem)
+        return None
+    if path.suffix == ".js":
+        return None if content == plotly_js() else "not plotly.js"
+    ends = {".html": "</html>\n", ".csv": "\n"}
+    if path.suffix not in ends:
+        return "not a file of a batch"
+    return None if content.endswith(ends[path.suffix]) else "cut off"
