@@ -19,7 +19,7 @@ from typing import Any, Final, Literal
 
 from deltacam.batch import remote, versions
 from deltacam.batch.crew import Crew, Tell
-from deltacam.batch.scheduler import START, Address, Tls, address_of, reach, speaks_tls
+from deltacam.batch.scheduler import START, Address, Tls, address_of, reach
 from deltacam.errors import DeltacamError
 from deltacam.plain import plain
 
@@ -262,10 +262,6 @@ def _client(address: Address, timeout: float) -> Any:
     try:
         return make.Client(str(address), timeout=timeout, security=security, set_as_default=False, name="deltacam")
     except (OSError, TimeoutError, ValueError, ImportError, RuntimeError) as problem:
-        if address.tls is None and speaks_tls(address, timeout=timeout):
-            what = f"the scheduler at {address} wants TLS"
-            hint = "give its address as tls://..., with --tls-ca FILE --tls-cert FILE --tls-key FILE"
-            raise DeltacamError(what, hint=hint) from problem
         what = f"what listens at {address} does not answer as a Dask scheduler: {plain(str(problem), longest=_LONGEST)}"
         hint = "is our certificate signed by its authority?" if address.tls else START
         raise DeltacamError(what, hint=hint) from problem
