@@ -35,6 +35,7 @@ _ON_ITS_OWN: Final[dict[str, Any]] = (
 _OUT_OF_MEMORY: Final = ("MemoryError", "bad_alloc", "Memory allocation still failed")
 """What Python, C++ and OpenBLAS say when they end for want of memory."""
 
+_OVER: Final = "the batch is over"
 _LONGEST: Final = 300  # characters of what a process said last
 _STARTING: Final = 300.0  # s that a process may take to get ready
 _ENDING: Final = 5.0  # s that a process may take to end when it has stopped to answer
@@ -63,6 +64,8 @@ class WorkerProcess:
         with _Alarm(self._limits.time, running.process.kill) as alarm:
             result = running.answer(task)
         if result is None:
+            if self._is_over():
+                raise DeltacamError(_OVER)
             result = Result(self._late(task) if alarm.rang else _crashed(running, task))
         if alarm.rang or result.outcome.status in (Status.MEMORY, Status.CRASHED):
             self._end()
@@ -80,13 +83,13 @@ class WorkerProcess:
             self._end()  # between two parts, so none of them did it
         with self._lock:
             if self._closed:
-                raise DeltacamError("the batch is over")
+                raise DeltacamError(_OVER)
             running = self._running = self._running or _Running(self._limits.memory)
         try:
             running.get_ready()
-        except BaseException:
+        except DeltacamError as problem:
             self._end()
-            raise
+            raise DeltacamError(_OVER) if self._is_over() else problem from None
         return running
 
     def _end(self) -> None:
@@ -94,6 +97,10 @@ class WorkerProcess:
             running, self._running = self._running, None
         if running is not None:
             running.kill()
+
+    def _is_over(self) -> bool:
+        with self._lock:
+            return self._closed
 
     def _late(self, task: Task) -> Outcome:
         return ended(Status.TIMEOUT, task, f"not planned within {self._limits.time:g} s")

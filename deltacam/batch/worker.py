@@ -11,8 +11,9 @@ import queue
 import struct
 import sys
 import threading
+import traceback
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import IO, Final, NoReturn
 
 _HEAD: Final = struct.Struct("<Q")
@@ -86,7 +87,21 @@ def ending_with(stream: IO[bytes]) -> Iterator[None]:
 
 
 def main(memory: int | None) -> NoReturn:
-    """Plan what comes until nothing comes any more."""
+    """Plan what comes until nothing comes any more.
+
+    Ends without Python's own end, which would wait for the thread that listens, or abort because of it.
+    """
+    try:
+        plan_all(memory)
+    except BaseException:  # noqa: BLE001 - what Python would do
+        with suppress(BaseException):  # there may be no memory for it
+            traceback.print_exc()
+        os._exit(1)
+    os._exit(0)
+
+
+def plan_all(memory: int | None) -> None:
+    """Plan what comes, up to a part for which the memory is not enough."""
     tasks, results = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints must not come between the results
     leave_no_core()
@@ -105,8 +120,7 @@ def main(memory: int | None) -> NoReturn:
             answer = pickle.dumps(result)
         send(results, answer)
         if result.outcome.status is Status.MEMORY:
-            break  # a fresh process has its memory in one piece
-    os._exit(0)  # not by way of Python's own end, for which the thread that listens would have to end first
+            return  # a fresh process has its memory in one piece
 
 
 def listen(stream: IO[bytes]) -> queue.SimpleQueue[bytes]:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import threading
+import time
 from collections.abc import Generator, Iterator, Mapping
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
@@ -16,6 +19,9 @@ from deltacam.errors import DeltacamError
 from deltacam.program.formats import read_program
 from deltacam.report.page import plotly_js
 from deltacam.robot.reader import load_robot
+
+ROOT: Final = Path(__file__).parents[2]
+_FAULTS: Final = str(Path(__file__).parent / "faults")
 
 OPTIONS: Final[Mapping[str, Any]] = {
     "robot": load_robot("delta-300"),
@@ -105,3 +111,38 @@ def _problem(path: Path) -> str | None:
     if path.suffix not in ends:
         return "not a file of a batch"
     return None if content.endswith(ends[path.suffix]) else "cut off"
+
+
+def with_faults(enabled: bool = True) -> str:
+    """A PYTHONPATH with which a process that plans fails as the name of the drawing says."""
+    before = [path for path in os.environ.get("PYTHONPATH", "").split(os.pathsep) if path and path != _FAULTS]
+    ours = [str(ROOT), str(ROOT / "cli")]
+    return os.pathsep.join([*([_FAULTS] if enabled else []), *ours, *before])
+
+
+def children(pid: int) -> list[int]:
+    """The processes that a process has started and that have not ended: Linux."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            state, parent = stat.read_text().rpartition(")")[2].split()[:2]
+            if int(parent) == pid and state not in "ZX":
+                found.append(int(stat.parent.name))
+    return sorted(found)
+
+
+def ended(pids: list[int], within: float = 20.0) -> bool:
+    """Whether none of the processes is there any more, or at the latest after so many seconds."""
+    until = time.monotonic() + within
+    while any(_is_there(pid) for pid in pids):
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+def _is_there(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
