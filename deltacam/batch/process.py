@@ -103,7 +103,9 @@ class WorkerProcess:
             return self._closed
 
     def _late(self, task: Task) -> Outcome:
-        return ended(Status.TIMEOUT, task, f"not planned within {self._limits.time:g} s")
+        return ended(
+            Status.TIMEOUT, task, f"not planned within {self._limits.time:g} s", "let it take longer with --time-limit"
+        )
 
 
 class _Running:
@@ -228,7 +230,7 @@ def _crashed(running: _Running, task: Task) -> Outcome:
             hint = "the system may have run out of memory: plan fewer parts at a time with --jobs"
     words = running.last_words()
     if any(sign in words for sign in _OUT_OF_MEMORY):
-        return ended(Status.MEMORY, task, worker.TOO_LITTLE)
+        return ended(Status.MEMORY, task, worker.TOO_LITTLE, worker.MORE)
     return ended(Status.CRASHED, task, f"{what}: {words}" if words else what, hint)
 
 

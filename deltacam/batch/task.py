@@ -8,7 +8,7 @@ from typing import Any, Final
 from deltacam import pipeline
 from deltacam.batch.parts import Facts, Outcome, Result, Status, Task
 from deltacam.batch.thumbnail import Lines, thumbnail
-from deltacam.batch.worker import TOO_LITTLE
+from deltacam.batch.worker import MORE, TOO_LITTLE
 from deltacam.drawing.reader import read_drawing
 from deltacam.errors import DeltacamError
 from deltacam.model import Report
@@ -41,7 +41,7 @@ def perform(task: Task) -> Result:
         outcome = _outcome(planned.report, thumbnail(planned.drawing), task)
     except Exception as problem:  # noqa: BLE001 - the last resort: the other parts are planned all the same
         if _is_for_want_of_memory(problem):
-            return Result(_ended(Status.MEMORY, task, TOO_LITTLE))
+            return Result(_ended(Status.MEMORY, task, TOO_LITTLE, hint=MORE))
         if isinstance(problem, DeltacamError):
             return _refused(problem, file, task)
         what = f"a fault of deltacam: {type(problem).__name__}: {problem}"
