@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import random
 import signal
@@ -17,9 +15,8 @@ from pathlib import Path
 import ezdxf
 import psutil
 
-from deltacam.batch.folder import PLOTLY, PRIVATE
-from deltacam.program.formats import read_program
-from deltacam.report.page import plotly_js
+from deltacam.batch.folder import PRIVATE
+from tests.batch.scene import damage, tree
 
 _PATIENCE = 60.0  # s
 
@@ -86,7 +83,7 @@ def campaign(folder: Path, scratch: Path, *, moments: int, seed: int) -> Iterato
     for number in range(moments):
         when, after = _kill(batch(folder, output), output, chance, usual, len(expected))
         files = len(tree(output)) if output.exists() else 0
-        flaws = list(_flaws(output))
+        flaws = damage(output)
         if number + 1 == moments or chance.random() < 0.6:  # else it is killed again
             assert batch(folder, output).wait() == 1
             flaws += _differences(tree(output), expected)
@@ -138,37 +135,7 @@ def _names(folder: Path, pattern: str) -> set[Path]:
     return set(folder.rglob(pattern)) if folder.exists() else set()
 
 
-def tree(output: Path) -> dict[str, str]:
-    """The hash of every file of results but the lock, by its name."""
-    files = (path for path in output.rglob("*") if path.is_file() and path.name != "lock")
-    return {path.relative_to(output).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
-
-
-def _flaws(output: Path) -> Iterator[str]:
-    """What is not whole of that which a person sees."""
-    for path in output.rglob("*"):
-        name = path.relative_to(output).as_posix()
-        if path.is_file() and not name.startswith(f"{PRIVATE}/"):
-            try:
-                if not _is_whole(path):
-                    yield f"{name} is not whole"
-            except Exception as problem:  # noqa: BLE001 - whatever it is, it is a flaw
-                yield f"{name}: {problem}"
-
-
-def _is_whole(path: Path) -> bool:
-    if path.name.endswith(".program.csv"):
-        return len(read_program(path).q) > 0  # which compares the hash of its rows
-    if path.suffix == ".json":
-        return bool(json.loads(path.read_text()))
-    if path.suffix == ".html":
-        return path.read_text().endswith("</html>\n")
-    if path.name == PLOTLY:
-        return path.read_text("utf-8") == plotly_js()
-    return path.name == "batch.csv" and path.read_text().endswith("\n")
-
-
-def _differences(found: dict[str, str], expected: dict[str, str]) -> Iterator[str]:
+def _differences(found: dict[str, bytes], expected: dict[str, bytes]) -> Iterator[str]:
     for name in sorted(found.keys() | expected.keys()):
         if found.get(name) != expected.get(name):
             yield f"{name} is not that of an undisturbed run"

@@ -12,6 +12,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
+from deltacam.batch.folder import PLOTLY, PRIVATE
+from deltacam.batch.key import sha256
 from deltacam.batch.parts import Part, Result, Task
 from deltacam.batch.task import perform
 from deltacam.cutting.process import load_process
@@ -62,12 +64,17 @@ def parts_of(folder: Path, **options: Any) -> list[Part]:
     return [Part(path.relative_to(folder).as_posix(), path, given) for path in sorted(folder.rglob("*.dxf"))]
 
 
+_KNOWN: Final[dict[str, Result]] = {}
+
+
 def plan_here(tasks: Iterator[Task], *, stop: threading.Event) -> Generator[tuple[Task, Result]]:
-    """A planner without processes of its own."""
+    """A planner without processes of its own, which plans what has one key once: the key names all that counts."""
     for task in tasks:
         if stop.is_set():
             return
-        yield task, perform(task)
+        if task.key not in _KNOWN:
+            _KNOWN[task.key] = perform(task)
+        yield task, _KNOWN[task.key]
 
 
 def tree(folder: Path) -> dict[str, bytes]:
@@ -79,38 +86,42 @@ def tree(folder: Path) -> dict[str, bytes]:
 def damage(folder: Path) -> list[str]:
     """What is not as it should be in a folder of results, whatever happened to the batch: nothing."""
     found = []
-    for path in folder.rglob("*"):
+    for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
-        if path.is_dir() or name.startswith(".deltacam-batch/"):
-            continue
-        if (problem := _problem(path)) is not None:
-            found.append(f"{name}: {problem}")
+        if path.is_file() and not name.startswith(f"{PRIVATE}/"):
+            try:
+                problem = _problem(path, folder)
+            except (DeltacamError, ValueError, LookupError, OSError) as error:
+                problem = repr(error)
+            found += [f"{name}: {problem}"] if problem else []
     return found
 
 
-def _problem(path: Path) -> str | None:
-    """Why a file is not whole."""
-    stem = path.name.split(".")[0]
+def _problem(path: Path, folder: Path) -> str:
+    """Why a file is not as it should be; empty where it is."""
     if path.name.endswith(".program.csv"):
-        try:
-            read_program(path)  # compares the SHA-256 that is in it
-        except DeltacamError as problem:
-            return str(problem)
-        reports = [path.with_name(f"{stem}.report{ending}") for ending in (".json", ".html")]
-        return None if all(report.exists() for report in reports) else "a program without its reports"
-    content = path.read_bytes().decode()
-    if path.suffix == ".json":
-        try:
-            json.loads(content)
-        except ValueError as problem:
-            return str(problem)
-        return None
-    if path.suffix == ".js":
-        return None if content == plotly_js() else "not plotly.js"
-    ends = {".html": "</html>\n", ".csv": "\n"}
-    if path.suffix not in ends:
+        return _problem_of_program(path)
+    if path.name == "batch.json":
+        files = [file for row in json.loads(path.read_bytes())["parts"] for file in row["files"]]
+        others = [file["name"] for file in files if sha256((folder / file["name"]).read_bytes()) != file["sha256"]]
+        return f"says something else of {others}" if others else ""
+    if path.name.endswith(".report.json"):
+        return "" if json.loads(path.read_bytes()) else "empty"
+    if path.name == PLOTLY:
+        return "" if path.read_bytes() == plotly_js().encode() else "another"
+    end = {".html": b"</html>\n", ".csv": b"\n"}.get(path.suffix)
+    if end is None:
         return "not a file of a batch"
-    return None if content.endswith(ends[path.suffix]) else "cut off"
+    return "" if path.read_bytes().endswith(end) else "cut off"
+
+
+def _problem_of_program(path: Path) -> str:
+    rows = len(read_program(path).q)  # which compares the hash of its rows
+    stem = path.name.removesuffix(".program.csv")
+    if not path.with_name(f"{stem}.report.html").exists():
+        return "a program without its report"
+    report = json.loads(path.with_name(f"{stem}.report.json").read_bytes())
+    return "" if report["passed"] and report["summary"]["program"]["rows"] == rows else "the report of another program"
 
 
 def with_faults(enabled: bool = True) -> str:
