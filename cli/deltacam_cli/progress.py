@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
@@ -116,11 +116,13 @@ class Stop:
     def ask(self, _signal: int, _frame: FrameType | None) -> None:
         """End cleanly; the second time, at once."""
         if self.asked:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # a third time must not come between the end and its tidying
             raise KeyboardInterrupt
         self.asked = True
         self.event.set()
-        # Not click.echo: it may be writing at this moment.
-        os.write(2, b"\nstopping: what is being planned is finished; Ctrl-C again stops at once\n")
+        with suppress(OSError):
+            # Not click.echo: it may be writing at this moment.
+            os.write(2, b"\nstopping: what is being planned is finished; Ctrl-C again stops at once\n")
 
 
 @contextmanager

@@ -56,11 +56,12 @@ def batch(folder: Path, output: Path) -> subprocess.Popen[bytes]:
     """A batch as the command runs it."""
     code = "from deltacam_cli.main import main; main()"
     options = ("--no-what-if", "--jobs", "2", "--memory", "none")
+    path = [*os.environ.get("PYTHONPATH", "").split(os.pathsep), *sys.path]
     return subprocess.Popen(
         [sys.executable, "-c", code, "batch", str(folder), "-o", str(output), *options],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, path))},
         start_new_session=True,
     )
 
