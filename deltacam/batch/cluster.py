@@ -38,6 +38,7 @@ _RECONNECTS: Final = 120.0  # s
 _PAUSE: Final = 1.0  # s between two attempts to connect again
 _LONGEST: Final = 300  # characters of what a worker said
 _NO_LIMIT: Final = 2**60  # bytes of a task above which Dask would warn
+_REMEMBERED: Final = 10  # messages; Dask would keep the last 1000, with the drawings in them
 _NOISY: Final = ("distributed", "tornado", "asyncio")
 
 
@@ -116,23 +117,28 @@ class Cluster:
         """Whether Dask has given up."""
         return self._client.status in ("closing", "closed")
 
-    def submit(self, work: bytes, *, key: str, run: str) -> tuple[Any, frozenset[str]]:
+    def submit(self, work: bytes, *, key: str, run: str, only: Collection[str]) -> Any:
         """Let a part be planned.
 
         Args:
             work: as `remote.perform` takes it.
             key: names the task.
             run: names the batch.
+            only: the workers that may plan it; empty for all.
 
         Returns:
-            the future, of what `_plan_there` returns; and the workers that it is for, where it is not for all.
+            the future, of what `_plan_there` returns; None where the connection has just been lost.
         """
-        only = sorted(self.crew.workers()) if self.crew.is_mixed else None
-        with dask.config.set({"distributed.admin.large-graph-warning-threshold": _NO_LIMIT}):
-            future = self._client.submit(
-                _plan_there(), work, run, self.crew.ours, key=key, pure=False, workers=only, allow_other_workers=False
-            )
-        return future, frozenset(only or ())
+        workers = sorted(only) or None
+        try:
+            with dask.config.set({"distributed.admin.large-graph-warning-threshold": _NO_LIMIT}):
+                return self._client.submit(
+                    _plan_there(), work, run, self.crew.ours, key=key, pure=False, workers=workers
+                )
+        except Exception:
+            if self.connected:
+                raise
+            return None
 
     def collect(self, future: Any) -> Answer:
         """What came of a future that is done."""
@@ -195,7 +201,11 @@ class Cluster:
 
     def threads(self) -> dict[str, int] | None:
         """The threads of every worker, by its address; None where the scheduler does not answer."""
-        found: dict[str, int] | None = self._ask(self._client.scheduler.ncores) if self.connected else None
+
+        async def ask() -> Any:
+            return await self._client.scheduler.ncores()
+
+        found: dict[str, int] | None = self._ask(ask)
         return found
 
     def of_scheduler(self) -> dict[str, str]:
@@ -209,12 +219,14 @@ class Cluster:
 
         return self._ask(ask) or {}
 
-    def _ask(self, question: Callable[..., Any], **given: Any) -> Any:
-        """What a coroutine of Dask's returns; None where nobody answers in time."""
-        if not self.connected:
-            return None
+    def _ask(self, question: Callable[[], Any]) -> Any:
+        """What a coroutine answers; None where there is no connection, or no answer in time."""
+
+        async def ask() -> Any:
+            return await question() if self.connected else None
+
         with suppress(OSError, TimeoutError):
-            return self._client.sync(question, callback_timeout=_ANSWERS, **given)
+            return self._client.sync(ask, callback_timeout=_ANSWERS) if self.connected else None
         return None
 
 
@@ -260,7 +272,8 @@ def _client(address: Address, timeout: float) -> Any:
     make: Any = distributed  # whose types are not complete
     security = make.Security(require_encryption=address.tls is not None, **files)
     try:
-        return make.Client(str(address), timeout=timeout, security=security, set_as_default=False, name="deltacam")
+        with dask.config.set({"distributed.admin.low-level-log-length": _REMEMBERED}):
+            return make.Client(str(address), timeout=timeout, security=security, set_as_default=False, name="deltacam")
     except (OSError, TimeoutError, ValueError, ImportError, RuntimeError) as problem:
         what = f"what listens at {address} does not answer as a Dask scheduler: {plain(str(problem), longest=_LONGEST)}"
         hint = "is our certificate signed by its authority?" if address.tls else START

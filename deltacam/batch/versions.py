@@ -46,8 +46,8 @@ def remedy(found: Iterable[Mapping[str, str]], ours: Mapping[str, str]) -> str:
     found = list(found)
     differing = [name for name in PACKAGES if any(there.get(name, ours[name]) != ours[name] for there in found)]
     if not differing:
-        return "let all machines have the same Python, and deltacam from the same place"
-    return f"there, pip install {' '.join(f'{name}=={ours[name]}' for name in differing)}, and start them again"
+        return "let all have the same Python, and deltacam from the same place; then start the workers again"
+    return f"there, pip install {' '.join(f'{name}=={ours[name]}' for name in differing)}; then start them again"
 
 
 def of_workers(run: Run, workers: Collection[str], ours: Mapping[str, str]) -> dict[str, dict[str, str]]:
@@ -72,7 +72,7 @@ def of_workers(run: Run, workers: Collection[str], ours: Mapping[str, str]) -> d
             else:
                 del found[worker]
     same = [worker for worker, there in found.items() if not differences(there, ours)]
-    for worker, answer in run(by_code(__name__, "source"), workers=same).items():
+    for worker, answer in run(by_code("deltacam.batch.remote", "source"), workers=same).items():
         found[worker][SOURCE] = answer if isinstance(answer, str) else MISSING
     return found
 

@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 SITE = """
-import importlib.metadata, os, pathlib, pickle, signal, sys, threading, time
+import importlib.metadata, os, pathlib, signal, sys, threading, time
 
 def end_with_the_tests():
     while os.read(0, 1):
@@ -23,12 +23,14 @@ def end_with_the_tests():
 def planning(task, real):  # in a process that plans
     if "hang" in task.name:
         time.sleep(1000)
+    if "slow" in task.name:
+        time.sleep(3)
     if "exit" in task.name:
         os._exit(7)
     return real(task)
 
 def working(work, *, real, **others):  # in a Dask worker
-    name = pickle.loads(work)[0].name
+    name = remote.unpack(work)[0].name
     if "kill" in name:
         os.kill(os.getpid(), signal.SIGKILL)
     if "sick" in name and not (once := pathlib.Path(os.environ["TEST_FOLDER"], name)).exists():

@@ -133,12 +133,12 @@ def test_nothing_there_is_said_at_once() -> None:
 
 def test_something_else_there_is_said_in_time() -> None:
     with socket.create_server(("127.0.0.1", 0)) as silent:
-        refused = refusal(f"127.0.0.1:{silent.getsockname()[1]}", timeout=1.0)
+        refused = refusal(f"127.0.0.1:{silent.getsockname()[1]}", timeout=0.4)
         assert "is not a Dask scheduler" in refused.what
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), http.server.SimpleHTTPRequestHandler) as web:
         threading.Thread(target=web.serve_forever).start()
         try:
-            refused = refusal(f"127.0.0.1:{web.server_port}", timeout=1.0)
+            refused = refusal(f"127.0.0.1:{web.server_port}", timeout=0.4)
         finally:
             web.shutdown()
         assert "is not a Dask scheduler" in refused.what
