@@ -110,7 +110,7 @@ class _Watch:
 
 
 def _plans(command: list[str] | None) -> bool:
-    return "deltacam.batch.worker" in " ".join(command or ())
+    return "deltacam.batch.planning.worker" in " ".join(command or ())
 
 
 def _digest(folder: Path) -> str:

@@ -47,11 +47,11 @@ if os.environ.get("TEST_LIES"):
     importlib.metadata.version = lambda package: said if package == name else version(package)
 if os.environ["TEST_ROLE"] == "scheduler":
     sys.modules["deltacam"] = None  # it needs none
-elif "deltacam.batch.worker" in sys.orig_argv:
-    from deltacam.batch import task
+elif "deltacam.batch.planning.worker" in sys.orig_argv:
+    from deltacam.batch.planning import task
     task.perform = lambda given, real=task.perform: planning(given, real)
 else:
-    from deltacam.batch import remote
+    from deltacam.batch.cluster import remote
     remote.perform = lambda work, real=remote.perform, **others: working(work, real=real, **others)
 """
 """Runs in every process of the cluster: parts of some names do harm there."""

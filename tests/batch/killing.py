@@ -15,7 +15,7 @@ from pathlib import Path
 import ezdxf
 import psutil
 
-from deltacam.batch.folder import PRIVATE
+from deltacam.batch.results.folder import PRIVATE
 from tests.batch.scene import damage, tree
 
 _PATIENCE = 60.0  # s

@@ -19,8 +19,9 @@ import numpy as np
 import psutil
 import pytest
 
-from deltacam.batch import cluster, elsewhere, local, remote
+from deltacam.batch.cluster import connection, elsewhere, remote
 from deltacam.batch.parts import Batch, Limits, Part, Result, Row, Status, Task
+from deltacam.batch.planning import local
 from deltacam.batch.run import run
 from deltacam.errors import DeltacamError
 from tests.batch.daskprocesses import ROOT, Processes
@@ -104,7 +105,7 @@ def plan(
     **options: Any,
 ) -> Batch:
     """A batch on the cluster."""
-    with cluster.connect(processes.address, tell=say, **options) as found:
+    with connection.connect(processes.address, tell=say, **options) as found:
         return run(parts, output, planner=partial(elsewhere.results, cluster=found, limits=limits), tell=tell)
 
 
@@ -119,7 +120,7 @@ def workers_of(dask: distributed.Client) -> set[int]:
 def planning(dask: distributed.Client) -> list[psutil.Process]:
     """The processes that the workers of the cluster plan with."""
     children = (child for pid in workers_of(dask) for child in psutil.Process(pid).children())
-    return [child for child in children if "deltacam.batch.worker" in child.cmdline()]
+    return [child for child in children if "deltacam.batch.planning.worker" in child.cmdline()]
 
 
 def scheduled(dask: distributed.Client) -> int:
@@ -229,7 +230,7 @@ def test_a_stop_finishes_what_is_planned_and_leaves_the_rest(
 ) -> None:
     stop = threading.Event()
     parts = discs(tmp_path, "slow.dxf", *(f"{number}.dxf" for number in range(7)))
-    with cluster.connect(processes.address) as found:
+    with connection.connect(processes.address) as found:
         planner = partial(elsewhere.results, cluster=found, limits=LIMITS)
         batch = run(parts, tmp_path, planner=planner, stop=stop, tell=lambda _row: stop.set())
     found_statuses = outcomes(batch)
@@ -247,12 +248,13 @@ def test_an_interrupt_ends_everything_on_the_cluster_and_says_nothing(
         import sys
         from functools import partial
         from pathlib import Path
-        from deltacam.batch import cluster, elsewhere
+        from deltacam.batch.cluster import connection
+        from deltacam.batch.cluster import elsewhere
         from deltacam.batch.parts import Limits, Part
         from deltacam.batch.run import run
         parts = [Part(path.name, path, {{}}) for path in Path({str(tmp_path)!r}).glob("*.dxf")]
         try:
-            with cluster.connect({processes.address!r}) as found:
+            with connection.connect({processes.address!r}) as found:
                 planner = partial(elsewhere.results, cluster=found, limits=Limits())
                 run(parts, Path({str(tmp_path)!r}), planner=planner)
         except KeyboardInterrupt:
@@ -279,7 +281,7 @@ def test_no_more_tasks_are_taken_than_the_cluster_has_room_for(
             taken += 1
             yield Task(f"{number}.dxf", b"no drawing", {}, str(number), "plotly.min.js")
 
-    with cluster.connect(processes.address) as found:
+    with connection.connect(processes.address) as found:
         stop = threading.Event()
         found_results = elsewhere.results(tasks(), cluster=found, limits=LIMITS, stop=stop)
         done: list[tuple[Task, Result]] = []

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from deltacam.batch import cluster, elsewhere, scheduler
+from deltacam.batch.cluster import connection, elsewhere, scheduler
+from deltacam.batch.cluster.scheduler import Tls
 from deltacam.batch.parts import Limits, Part
 from deltacam.batch.run import run
-from deltacam.batch.scheduler import Tls
 from deltacam.errors import DeltacamError
 from tests.batch.daskprocesses import Processes
 
@@ -60,7 +60,7 @@ def processes(tls: Tls, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pr
 def refusal(address: str, tls: Tls | None = None, *, timeout: float = 5.0) -> DeltacamError:
     with (
         pytest.raises(DeltacamError) as refused,
-        cluster.connect(address, tls=tls, timeout=timeout, patience=1.0),
+        connection.connect(address, tls=tls, timeout=timeout, patience=1.0),
     ):
         pass
     return refused.value
@@ -177,7 +177,7 @@ def test_a_batch_runs_over_tls_and_waits_for_a_worker_where_none_is_left(
     parts = [Part(f"{number}.dxf", tmp_path / f"{number}.dxf", {}) for number in range(4)]
     for part in parts:
         part.path.write_text("no drawing")
-    with cluster.connect(processes.address, tls=tls, tell=say) as found:
+    with connection.connect(processes.address, tls=tls, tell=say) as found:
         planner = partial(elsewhere.results, cluster=found, limits=Limits())
         batch = run(parts, tmp_path / "out", planner=planner, tell=lambda _row: processes.kill(worker))
     assert [row.outcome.status.value for row in batch.rows] == ["refused"] * 4

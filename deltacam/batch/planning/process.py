@@ -12,8 +12,8 @@ import threading
 from contextlib import suppress
 from typing import IO, Any, Final
 
-from deltacam.batch import worker
 from deltacam.batch.parts import Limits, Outcome, Result, Status, Task
+from deltacam.batch.planning import worker
 from deltacam.errors import DeltacamError
 from deltacam.plain import plain
 

@@ -108,7 +108,7 @@ def plan_all(memory: int | None) -> None:
     leave_no_core()
     messages = listen(tasks)
     from deltacam.batch.parts import Result, Status
-    from deltacam.batch.task import get_ready, perform
+    from deltacam.batch.planning.task import get_ready, perform
 
     get_ready()
     if memory is not None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import platform
 from collections.abc import Callable, Collection, Iterable, Mapping
 from importlib import metadata
-from pathlib import Path
 from typing import Any, Final, Protocol
+
+from deltacam.batch.planning.key import source
 
 PACKAGES: Final = ("deltacam", "numpy", "scipy", "shapely", "toppra", "ezdxf", "plotly", "distributed")
 """Programs and reports follow from these; Dask itself wants the last to be the same."""
@@ -72,7 +72,7 @@ def of_workers(run: Run, workers: Collection[str], ours: Mapping[str, str]) -> d
             else:
                 del found[worker]
     same = [worker for worker, there in found.items() if not differences(there, ours)]
-    for worker, answer in run(by_code("deltacam.batch.remote", "source"), workers=same).items():
+    for worker, answer in run(by_code("deltacam.batch.cluster.remote", "source"), workers=same).items():
         found[worker][SOURCE] = answer if isinstance(answer, str) else MISSING
     return found
 
@@ -96,14 +96,3 @@ def _version(name: str) -> str:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
         return MISSING
-
-
-def source() -> str:
-    """A short hash of deltacam's modules: two states of one version, as in a clone, differ in it."""
-    package = Path(__file__).parent.parent
-    total = hashlib.sha256()
-    for path in sorted(package.rglob("*.py")):
-        code = path.read_bytes().replace(b"\r\n", b"\n")  # as git checks them out on Windows
-        total.update(f"{path.relative_to(package).as_posix()}\n{len(code)}\n".encode())
-        total.update(code)
-    return total.hexdigest()[:12]

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from importlib import metadata
 from typing import Any, Final, Literal
 
-from deltacam.batch import remote, versions
-from deltacam.batch.crew import Crew, Tell
-from deltacam.batch.scheduler import START, Address, Tls, address_of, reach
+from deltacam.batch.cluster import remote, versions
+from deltacam.batch.cluster.crew import Crew, Tell
+from deltacam.batch.cluster.scheduler import START, Address, Tls, address_of, reach
 from deltacam.errors import DeltacamError
 from deltacam.plain import plain
 
@@ -243,7 +243,7 @@ def _plan_there() -> Callable[..., tuple[str, str, bytes]]:
         try:
             if version("deltacam") != ours["deltacam"]:  # its modules may be other ones
                 return worker.address, f"deltacam {version('deltacam')}, here {ours['deltacam']}", b""
-            from deltacam.batch.remote import perform
+            from deltacam.batch.cluster.remote import perform
 
             memory = worker.memory_manager.memory_limit
             unfit, data = perform(work, run=run, ours=ours, threads=worker.state.nthreads, memory=memory)

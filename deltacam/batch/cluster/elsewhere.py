@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any, Final
 
-from deltacam.batch.cluster import Answer, Cluster
+from deltacam.batch.cluster.connection import Answer, Cluster
+from deltacam.batch.cluster.remote import pack, unpack
 from deltacam.batch.parts import Limits, Result, Status, Task
-from deltacam.batch.process import ended
-from deltacam.batch.remote import pack, unpack
+from deltacam.batch.planning.process import ended
 
 _AHEAD: Final = 2
 """Tasks for every thread of a worker: one that it plans, and one that waits while the result of another is stored."""

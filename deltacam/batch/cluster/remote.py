@@ -15,9 +15,10 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Final
 
-from deltacam.batch import versions
+from deltacam.batch.cluster import versions
 from deltacam.batch.parts import Limits, Result, Task
-from deltacam.batch.process import WorkerProcess
+from deltacam.batch.planning import key
+from deltacam.batch.planning.process import WorkerProcess
 from deltacam.errors import DeltacamError
 from deltacam.machine import share_of_memory
 
@@ -26,7 +27,7 @@ _FRESH: Final = 1.0  # s
 _REMEMBERED: Final = 1000
 _MOST_OF_MEMORY: Final = 0.8
 
-_LOADED: Final = versions.source()
+_LOADED: Final = key.source()
 """What this worker began with; the processes that it starts have what is there by then."""
 
 
@@ -66,7 +67,7 @@ def unpack(data: bytes) -> Any:
 
 def source() -> str:
     """What deltacam's source is here, and whether that has changed since this worker began."""
-    now = versions.source()
+    now = key.source()
     return now if now == _LOADED else f"{now}, but {_LOADED} as the worker was started"
 
 
