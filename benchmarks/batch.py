@@ -103,14 +103,15 @@ class _Watch:
         while not self._over.wait(0.5):
             try:
                 self.parent = self._process.memory_info().rss / 1e6
-                planning = [each for each in psutil.process_iter(["cmdline"]) if _plans(each.info["cmdline"])]
+                # Those of this batch, or of the workers of Dask that we have started.
+                planning = [each for each in psutil.Process().children(recursive=True) if _plans(each.cmdline())]
                 self.worker = max((each.memory_info().rss / 1e6 for each in planning), default=0.0)
             except psutil.Error:
                 continue  # it has ended meanwhile
 
 
-def _plans(command: list[str] | None) -> bool:
-    return "deltacam.batch.planning.worker" in " ".join(command or ())
+def _plans(command: list[str]) -> bool:
+    return "deltacam.batch.planning.worker" in command
 
 
 def _digest(folder: Path) -> str:

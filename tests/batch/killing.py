@@ -8,17 +8,17 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-
-import ezdxf
-import psutil
+from typing import Final
 
 from deltacam.batch.results.folder import PRIVATE
-from tests.batch.scene import damage, tree
+from tests.batch.scene import children, damage, ended, plate, tree
 
-_PATIENCE = 60.0  # s
+_PAUSE: Final = 1e-3  # s between two looks at what there is
+_AGAIN: Final = 0.5  # of the batches that were killed are killed again before one may end
+_ENDED: Final = 1  # one drawing is refused
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,36 +26,32 @@ class Moment:
     """When a batch was killed, and what was wrong afterwards.
 
     Attributes:
-        number: of the moment.
         when: in words.
         after: how long the batch had run, s.
         files: how many files of results there were.
+        unfinished: how many files were there that nobody sees, because they were not whole.
         flaws: what was not as it should be; empty where nothing was.
     """
 
-    number: int
     when: str
     after: float
     files: int
+    unfinished: int
     flaws: tuple[str, ...]
 
 
 def draw(folder: Path, parts: int) -> None:
     """Small parts of different sizes, some of them in a subfolder, and one that is refused."""
-    (folder / "more").mkdir(parents=True)
     for number in range(parts):
-        document = ezdxf.new(units=4)
-        space = document.modelspace()
-        for ring in range(1, 2 + number % 3):
-            space.add_circle((0.0, 0.0), (3.0 + 0.25 * number) * ring)
-        document.saveas(folder / ("more" if number % 2 else "") / f"part{number}.dxf")
+        subfolder = "more" if number % 2 else ""
+        plate(folder / subfolder / f"part{number}.dxf", width=10.0 + number, holes=number % 3)
     (folder / "broken.dxf").write_text("this is no drawing\n")
 
 
-def batch(folder: Path, output: Path) -> subprocess.Popen[bytes]:
+def batch(folder: Path, output: Path, *, jobs: int = 2) -> subprocess.Popen[bytes]:
     """A batch as the command runs it."""
     code = "from deltacam_cli.main import main; main()"
-    options = ("--no-what-if", "--jobs", "2", "--memory", "none")
+    options = ("--no-what-if", "--jobs", str(jobs), "--memory", "none")
     path = [*os.environ.get("PYTHONPATH", "").split(os.pathsep), *sys.path]
     return subprocess.Popen(
         [sys.executable, "-c", code, "batch", str(folder), "-o", str(output), *options],
@@ -66,77 +62,80 @@ def batch(folder: Path, output: Path) -> subprocess.Popen[bytes]:
     )
 
 
-def campaign(folder: Path, scratch: Path, *, moments: int, seed: int) -> Iterator[Moment]:
-    """Kill a batch so many times, and let it go on after each; some are killed more than once before they may end.
+def campaign(folder: Path, scratch: Path, *, moments: int, seed: int, jobs: int = 2) -> Iterator[Moment]:
+    """Kill a batch so many times, and let it go on after each; some are killed several times before one may end.
+
+    A batch that ended before its moment came does not count, but its results do.
 
     Args:
         folder: of drawings, as `draw` makes them.
         scratch: an empty folder.
         moments: how many times a batch is killed.
         seed: for when.
+        jobs: of the batch.
     """
     begin = time.monotonic()
-    assert batch(folder, scratch / "undisturbed").wait() == 1  # one drawing is refused
-    usual = time.monotonic() - begin
-    expected = tree(scratch / "undisturbed")
+    assert batch(folder, scratch / "undisturbed", jobs=jobs).wait() == _ENDED
+    usual, expected = time.monotonic() - begin, tree(scratch / "undisturbed")
     chance = random.Random(seed)  # noqa: S311 - no secret
-    output = scratch / "0"
-    for number in range(moments):
-        when, after = _kill(batch(folder, output), output, chance, usual, len(expected))
-        files = len(tree(output)) if output.exists() else 0
-        flaws = damage(output)
-        if number + 1 == moments or chance.random() < 0.6:  # else it is killed again
-            assert batch(folder, output).wait() == 1
+    outputs = (scratch / str(number) for number in range(sys.maxsize))
+    output, killed = next(outputs), 0
+    while killed < moments:
+        when, comes = _moment(output, chance, usual, len(expected))
+        process = batch(folder, output, jobs=jobs)
+        after, flaws = _kill(process, comes)
+        found = tree(output)
+        unfinished = sum(name.endswith(".tmp") for name in found)
+        flaws += damage(output)
+        if is_over := process.returncode != -signal.SIGKILL:
+            flaws += [] if process.returncode == _ENDED else [f"it ended with {process.returncode}"]
+        elif is_over := killed + 1 == moments or chance.random() >= _AGAIN:
+            flaws += [] if batch(folder, output, jobs=jobs).wait() == _ENDED else ["the next run did not end well"]
+        if is_over:
             flaws += _differences(tree(output), expected)
-            output = scratch / str(number + 1)
-        yield Moment(number, when, after, files, tuple(flaws))
+            output = next(outputs)
+        if flaws or process.returncode == -signal.SIGKILL:
+            killed += 1
+            yield Moment(when, after, len(found) - unfinished, unfinished, tuple(flaws))
 
 
-def _kill(
-    process: subprocess.Popen[bytes], output: Path, chance: random.Random, usual: float, files: int
-) -> tuple[str, float]:
-    """Kill the batch at some time, or as soon as so many files or a file that is not whole are there."""
-    begin = time.monotonic()
+def _moment(output: Path, chance: random.Random, usual: float, files: int) -> tuple[str, Callable[[float], bool]]:
+    """When a batch is to be killed, in words, and whether that is now, so many seconds after its beginning."""
     kind = chance.choice(("time", "files", "unfinished"))
-    there, unfinished = (
-        _names(output, "*.*"),
-        _names(output / PRIVATE, "*.tmp"),
-    )  # from the batch that was killed before
-    wanted = chance.uniform(0.0, 1.05 * usual) if kind == "time" else len(there) + chance.randrange(files)
-    skipped = chance.randrange(files)
-    while process.poll() is None:
-        if kind == "time" and time.monotonic() - begin >= wanted:
-            break
-        if kind == "files" and len(_names(output, "*.*")) > wanted:
-            break
-        if kind == "unfinished" and (new := _names(output / PRIVATE, "*.tmp") - unfinished):
-            unfinished |= new
-            skipped -= 1
-            if skipped < 0:
-                break
-        time.sleep(2e-4)
+    there, skipped = _names(output, "*.*"), chance.randrange(max(files - len(_names(output, "*.*")), 1))
+    if kind == "time":
+        time_wanted = chance.uniform(0.0, usual)
+        return f"after {time_wanted:.2f} s", lambda after: after >= time_wanted
+    if kind == "files":
+        number = len(there) + skipped
+        return f"with more than {number} files", lambda _: len(_names(output, "*.*")) > number
+    seen = _names(output / PRIVATE, "*.tmp")
+    number = len(seen) + skipped
+
+    def is_writing(_: float) -> bool:
+        new = _names(output / PRIVATE, "*.tmp") - seen
+        seen.update(new)
+        return bool(new) and len(seen) > number
+
+    return f"while file {skipped + 1} is written", is_writing
+
+
+def _kill(process: subprocess.Popen[bytes], comes: Callable[[float], bool]) -> tuple[float, list[str]]:
+    """Kill a batch when the moment comes; when that was, and what was wrong with it."""
+    begin = time.monotonic()
+    while process.poll() is None and not comes(time.monotonic() - begin):
+        time.sleep(_PAUSE)
     after = time.monotonic() - begin
-    family = _family(process.pid)
+    family = children(process.pid)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    _, alive = psutil.wait_procs(family, timeout=_PATIENCE)
-    words = {"time": f"after {after:.2f} s", "files": f"with more than {wanted} files"}
-    left = f"; {len(alive)} processes are left" if alive else ""
-    return words.get(kind, "in the middle of a file") + left, after
-
-
-def _family(pid: int) -> list[psutil.Process]:
-    try:
-        return psutil.Process(pid).children(recursive=True)
-    except psutil.NoSuchProcess:
-        return []
+    return after, [] if ended(family) else ["processes of it are left"]
 
 
 def _names(folder: Path, pattern: str) -> set[Path]:
     return set(folder.rglob(pattern)) if folder.exists() else set()
 
 
-def _differences(found: dict[str, bytes], expected: dict[str, bytes]) -> Iterator[str]:
-    for name in sorted(found.keys() | expected.keys()):
-        if found.get(name) != expected.get(name):
-            yield f"{name} is not that of an undisturbed run"
+def _differences(found: dict[str, bytes], expected: dict[str, bytes]) -> list[str]:
+    names = sorted(found.keys() | expected.keys())
+    return [f"{name} is not that of an undisturbed run" for name in names if found.get(name) != expected.get(name)]
