@@ -1,10 +1,12 @@
 """The address of a scheduler, TLS with real certificates, and what is said where nothing answers."""
 
 import http.server
+import re
 import shutil
 import socket
 import subprocess
 import threading
+import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -127,7 +129,7 @@ def test_nothing_there_is_said_at_once() -> None:
         port = free.getsockname()[1]
     refused = refusal(f"127.0.0.1:{port}")
     assert refused.what == f"no scheduler answers at tcp://127.0.0.1:{port}: connection refused"
-    assert "dask scheduler" in refused.hint
+    assert f"dask scheduler --host 127.0.0.1 --port {port}" in refused.hint
     assert "no scheduler answers at tcp://no.such.host.invalid:8786: " in refusal("no.such.host.invalid:8786").what
 
 
@@ -160,10 +162,22 @@ def test_a_scheduler_with_tls_lets_in_only_who_belongs_to_it(processes: Processe
 
 
 @needs_openssl
+def test_a_worker_is_told_from_its_scheduler(processes: Processes, tls: Tls) -> None:
+    worker = processes.add_worker("--no-nanny")
+    while not (found := re.findall(r"Start worker at: *(tls://\S+)", processes.words)):
+        assert worker.poll() is None
+        time.sleep(0.1)
+    refused = refusal(found[-1], tls)
+    processes.kill(worker)
+    assert "it says that it is a Worker" in refused.what
+    assert "Scheduler at:" in refused.hint
+
+
+@needs_openssl
 def test_a_batch_runs_over_tls_and_waits_for_a_worker_where_none_is_left(
     processes: Processes, tls: Tls, tmp_path: Path
 ) -> None:
-    refused = refusal(processes.address, tls)
+    refused = refusal(processes.address, tls)  # a worker that was killed has gone at once
     assert "has no worker: waited 1 s" in refused.what
     assert f"dask worker {processes.address}" in refused.hint
     worker = processes.add_worker("--no-nanny")

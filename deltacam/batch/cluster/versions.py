@@ -37,7 +37,7 @@ def python(full: str) -> str:
 def differences(there: Mapping[str, str], ours: Mapping[str, str]) -> str:
     """In what another machine differs, in words; empty where it does not. What is not known of it does not count."""
     return ", ".join(
-        f"{name} {found}, here {ours[name]}" for name, found in there.items() if name in ours and found != ours[name]
+        f"{name} {found} (here {ours[name]})" for name, found in there.items() if name in ours and found != ours[name]
     )
 
 
