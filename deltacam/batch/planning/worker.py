@@ -134,7 +134,8 @@ def listen(stream: IO[bytes]) -> queue.SimpleQueue[bytes]:
                 waiting.put(message)
         except MemoryError:
             os.write(2, b"MemoryError\n")
-        os._exit(1)
+        finally:
+            os._exit(1)  # whatever it was: nobody would hear of a task any more
 
     threading.Thread(target=receive_all, daemon=True).start()
     return waiting
