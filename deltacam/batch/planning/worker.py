@@ -20,10 +20,6 @@ _HEAD: Final = struct.Struct("<Q")
 READY: Final = b"ready"
 """The first message of a worker."""
 
-TOO_LITTLE: Final = "the memory that a part may take is not enough"
-MORE: Final = "let it take more with --memory, or plan fewer parts at a time with --jobs"
-"""What is said of a part that needs more, and what to do."""
-
 
 def send(stream: IO[bytes], message: bytes) -> None:
     """Write a message, its length first.
