@@ -111,7 +111,7 @@ class _Watch:
 
 
 def _plans(command: list[str]) -> bool:
-    return "deltacam.batch.worker" in command
+    return "deltacam.batch.planning.worker" in command
 
 
 def _digest(folder: Path) -> str:

@@ -18,8 +18,8 @@ from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 
-from deltacam.batch.local import results
 from deltacam.batch.parts import Limits, Part
+from deltacam.batch.planning.local import results
 from deltacam.batch.run import run
 from deltacam.cutting.process import load_process
 from deltacam.pipeline import plan_to_folder

@@ -64,8 +64,8 @@ ONLY_IN = {
     "ezdxf": ("deltacam/drawing/",),
     "toppra": ("deltacam/motion/parametrize.py",),
     "click": ("cli/",),
-    "distributed": ("deltacam/batch/cluster.py",),
-    "filelock": ("deltacam/batch/folder.py",),
+    "distributed": ("deltacam/batch/cluster/connection.py",),
+    "filelock": ("deltacam/batch/results/folder.py",),
     "pyarrow": ("deltacam/program/parquet.py",),
     "shapely": ("deltacam/drawing/", "deltacam/cutting/", "deltacam/verification/"),
 }

@@ -18,9 +18,9 @@ from deltacam_cli.planning import JOBS, how, how_options, planning_options, sett
 from deltacam_cli.progress import PartsProgress, stopping_cleanly
 
 if TYPE_CHECKING:
-    from deltacam.batch.find import Found
+    from deltacam.batch.choosing.find import Found
+    from deltacam.batch.choosing.rules import Rules, Wanted
     from deltacam.batch.parts import Batch, Part
-    from deltacam.batch.rules import Rules, Wanted
     from deltacam.batch.run import Planner
     from deltacam.defaults import Defaults
 
@@ -71,7 +71,7 @@ def command(
     deltacam batch parts -o out --include 'brackets/*' --process my-steel.toml
     find parts -name '*.dxf' -newer stamp | deltacam batch parts -o out --list -
     """
-    from deltacam.batch.find import find
+    from deltacam.batch.choosing.find import find
     from deltacam.batch.run import run
 
     found = find(folder, include=include, exclude=exclude, listed=None if listed is None else _names(listed))
@@ -94,7 +94,7 @@ def _names(listed: str) -> tuple[str, ...]:
     Raises:
         DeltacamError: it cannot be read.
     """
-    from deltacam.batch.find import names_in
+    from deltacam.batch.choosing.find import names_in
 
     try:
         with click.open_file(listed, "rb") as stream:
@@ -106,7 +106,7 @@ def _names(listed: str) -> tuple[str, ...]:
 
 
 def _rules(file: Path | None, folder: Path) -> Rules:
-    from deltacam.batch import rules
+    from deltacam.batch.choosing import rules
 
     return rules.find_rules(folder) if file is None else rules.read(file)
 
@@ -167,9 +167,9 @@ def _planner(
     Raises:
         DeltacamError: a value is wrong, or the cluster cannot be used.
     """
-    from deltacam.batch import local
+    from deltacam.batch.cluster.scheduler import tls_of
     from deltacam.batch.parts import Limits
-    from deltacam.batch.scheduler import tls_of
+    from deltacam.batch.planning import local
     from deltacam.machine import cores, share_of_memory
 
     time = options.bounded("--time-limit", time_limit, parse_duration, _TIME, "from 1 s to 168 h")
@@ -182,8 +182,8 @@ def _planner(
         size = share_of_memory(processes) if memory is None else own
         yield partial(local.results, jobs=processes, limits=Limits(time, size))
         return
-    from deltacam.batch.cluster import connect
-    from deltacam.batch.elsewhere import results
+    from deltacam.batch.cluster.connection import connect
+    from deltacam.batch.cluster.elsewhere import results
 
     if jobs:
         raise click.UsageError("--jobs is for this machine; a cluster plans as many parts as its workers have threads")
@@ -196,9 +196,9 @@ def _say(what: str) -> None:
 
 
 def _show(batch: Batch, output: Path, *, as_json: bool) -> None:
-    from deltacam.batch.listing import to_dict
+    from deltacam.batch.results.listing import to_dict
+    from deltacam.batch.results.text import to_text
     from deltacam.batch.run import SUMMARIES
-    from deltacam.batch.text import to_text
     from deltacam.plain import plain
 
     if as_json:

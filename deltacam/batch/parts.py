@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, Final
 
 
 class Status(StrEnum):
@@ -70,6 +70,11 @@ class Limits:
 
     time: float | None = None
     memory: int | None = None
+
+
+TOO_LITTLE: Final = "the memory that a part may take is not enough"
+MORE: Final = "let it take more with --memory, or plan fewer parts at a time with --jobs"
+"""What is said of a part that needs more memory than it may take, and what to do."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,12 +9,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
-from deltacam.batch.folder import ResultFolder, hold, is_full, library_of, share_plotly
-from deltacam.batch.index import to_html
-from deltacam.batch.key import key_of, sha256
-from deltacam.batch.listing import to_csv, to_json
 from deltacam.batch.parts import Batch, Outcome, Part, Result, Row, Status, Stored, Task
-from deltacam.batch.record import Record, Recorded
+from deltacam.batch.planning.key import key_of, sha256
+from deltacam.batch.results.folder import ResultFolder, hold, is_full, library_of, share_plotly
+from deltacam.batch.results.index import to_html
+from deltacam.batch.results.listing import to_csv, to_json
+from deltacam.batch.results.record import Record, Recorded
 from deltacam.drawing.dxf.document import read_bytes
 from deltacam.errors import DeltacamError, ProgramError
 

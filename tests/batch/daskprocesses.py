@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 SITE = """
-import importlib.metadata, os, pathlib, pickle, signal, sys, threading, time
+import importlib.metadata, os, pathlib, signal, sys, threading, time
 
 def end_with_the_tests():
     while os.read(0, 1):
@@ -23,12 +23,14 @@ def end_with_the_tests():
 def planning(task, real):  # in a process that plans
     if "hang" in task.name:
         time.sleep(1000)
+    if "slow" in task.name:
+        time.sleep(3)
     if "exit" in task.name:
         os._exit(7)
     return real(task)
 
 def working(work, *, real, **others):  # in a Dask worker
-    name = pickle.loads(work)[0].name
+    name = remote.unpack(work)[0].name
     if "kill" in name:
         os.kill(os.getpid(), signal.SIGKILL)
     if "sick" in name and not (once := pathlib.Path(os.environ["TEST_FOLDER"], name)).exists():
@@ -45,11 +47,11 @@ if os.environ.get("TEST_LIES"):
     importlib.metadata.version = lambda package: said if package == name else version(package)
 if os.environ["TEST_ROLE"] == "scheduler":
     sys.modules["deltacam"] = None  # it needs none
-elif "deltacam.batch.worker" in sys.orig_argv:
-    from deltacam.batch import task
+elif "deltacam.batch.planning.worker" in sys.orig_argv:
+    from deltacam.batch.planning import task
     task.perform = lambda given, real=task.perform: planning(given, real)
 else:
-    from deltacam.batch import remote
+    from deltacam.batch.cluster import remote
     remote.perform = lambda work, real=remote.perform, **others: working(work, real=real, **others)
 """
 """Runs in every process of the cluster: parts of some names do harm there."""

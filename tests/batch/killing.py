@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from deltacam.batch.folder import PRIVATE
+from deltacam.batch.results.folder import PRIVATE
 from tests.batch.scene import children, damage, ended, plate, tree
 
 _PAUSE: Final = 1e-3  # s between two looks at what there is

@@ -12,10 +12,10 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
-from deltacam.batch.folder import PLOTLY, PRIVATE
-from deltacam.batch.key import sha256
 from deltacam.batch.parts import Part, Result, Task
-from deltacam.batch.task import perform
+from deltacam.batch.planning.key import sha256
+from deltacam.batch.planning.task import perform
+from deltacam.batch.results.folder import PLOTLY, PRIVATE
 from deltacam.cutting.process import load_process
 from deltacam.errors import DeltacamError
 from deltacam.program.formats import read_program

@@ -19,8 +19,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from deltacam.batch.key import sha256
 from deltacam.batch.parts import Batch
+from deltacam.batch.planning.key import sha256
 from deltacam.batch.run import run
 from deltacam.errors import DeltacamError
 from tests.batch.scene import bow_tie, damage, parts_of, plan_here, plate, tree

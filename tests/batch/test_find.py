@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from deltacam.batch.find import Found, find, names_in, refuse_clashes
+from deltacam.batch.choosing.find import Found, find, names_in, refuse_clashes
 from deltacam.batch.parts import Part
 from deltacam.errors import DeltacamError
 

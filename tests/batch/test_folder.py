@@ -14,8 +14,8 @@ from typing import Final
 
 import pytest
 
-from deltacam.batch.folder import ENDINGS, PRIVATE, hold, library_of, share_plotly
 from deltacam.batch.parts import Batch, Part, Status
+from deltacam.batch.results.folder import ENDINGS, PRIVATE, hold, library_of, share_plotly
 from deltacam.batch.run import run
 from deltacam.errors import DeltacamError, ProgramError
 from tests.batch.scene import ROOT, damage, parts_of, plan_here, plate, tree
@@ -194,7 +194,7 @@ def test_a_second_batch_in_the_same_folder_is_refused_and_the_first_is_not_distu
 
 def test_a_folder_is_free_again_when_its_batch_was_killed(tmp_path: Path) -> None:
     code = (
-        "import os, sys\nfrom pathlib import Path\nfrom deltacam.batch.folder import hold\n"
+        "import os, sys\nfrom pathlib import Path\nfrom deltacam.batch.results.folder import hold\n"
         "with hold(Path(sys.argv[1])):\n    os.kill(os.getpid(), 9)\n"
     )
     path = os.pathsep.join((str(ROOT), *sys.path))

@@ -13,10 +13,10 @@ from urllib.parse import unquote_to_bytes
 
 import pytest
 
-from deltacam.batch.index import to_html
 from deltacam.batch.parts import Batch, Part, Result, Row, Status, Task
+from deltacam.batch.planning.task import perform
+from deltacam.batch.results.index import to_html
 from deltacam.batch.run import run
-from deltacam.batch.task import perform
 from deltacam.cutting.process import load_process
 from deltacam.robot.reader import load_robot
 from tests.batch.rows import HOSTILE, facts, failed, passed, without

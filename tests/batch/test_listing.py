@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from deltacam.batch.listing import columns, to_csv, to_dict, to_json
 from deltacam.batch.parts import Batch, Outcome, Row, Status
-from deltacam.batch.totals import totals
+from deltacam.batch.results.listing import columns, to_csv, to_dict, to_json
+from deltacam.batch.results.totals import totals
 from tests.batch.rows import HOSTILE, facts, failed, passed, without
 
 DOCS = Path(__file__).parents[2] / "docs" / "reference"

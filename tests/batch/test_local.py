@@ -16,8 +16,8 @@ from typing import Final
 
 import pytest
 
-from deltacam.batch import local
 from deltacam.batch.parts import Limits, Part, Result, Row, Task
+from deltacam.batch.planning import local
 from deltacam.batch.run import run
 from deltacam.errors import DeltacamError
 from tests.batch.killing import batch as started

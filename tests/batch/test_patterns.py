@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deltacam.batch.patterns import SHOWN, check_pattern, matches, suggestion, written
+from deltacam.batch.choosing.patterns import SHOWN, check_pattern, matches, suggestion, written
 from deltacam.errors import DeltacamError
 
 LETTERS = st.text(st.sampled_from("abA[]!.-/ \n"), max_size=12)

@@ -15,10 +15,10 @@ from typing import Final
 
 import pytest
 
-from deltacam.batch import local
-from deltacam.batch.key import key_of
 from deltacam.batch.parts import Batch, Limits, Outcome, Part, Status, Task
-from deltacam.batch.process import WorkerProcess
+from deltacam.batch.planning import local
+from deltacam.batch.planning.key import key_of
+from deltacam.batch.planning.process import WorkerProcess
 from deltacam.batch.run import run
 from deltacam.errors import DeltacamError
 from tests.batch.scene import OPTIONS, children, damage, ended, parts_of, plate, with_faults
@@ -169,7 +169,7 @@ PARENT: Final = """
 import sys, threading
 from pathlib import Path
 from deltacam.batch.parts import Limits
-from deltacam.batch.process import WorkerProcess
+from deltacam.batch.planning.process import WorkerProcess
 from tests.batch.scene import parts_of
 from tests.batch.test_process import _task
 

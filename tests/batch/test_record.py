@@ -12,9 +12,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from deltacam.batch.folder import ResultFolder, hold
 from deltacam.batch.parts import Facts, Outcome, Status, Stored
-from deltacam.batch.record import NAME, Record, Recorded
+from deltacam.batch.results.folder import ResultFolder, hold
+from deltacam.batch.results.record import NAME, Record, Recorded
 from deltacam.errors import ProgramError
 
 TEXT: Final = st.text(max_size=8) | st.sampled_from(["\udcff", "\u2028", "</script>", '"\\\n'])

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deltacam.batch.rules import FILE, MOST, Rule, Rules, Wanted, find_rules, read
+from deltacam.batch.choosing.rules import FILE, MOST, Rule, Rules, Wanted, find_rules, read
 from deltacam.errors import DeltacamError
 from deltacam.units import METRES_PER
 

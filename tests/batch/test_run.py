@@ -14,11 +14,11 @@ from typing import Any
 
 import pytest
 
-from deltacam.batch import folder as folders
-from deltacam.batch.key import sha256
 from deltacam.batch.parts import Batch, Part, Result, Row, Status, Task
+from deltacam.batch.planning.key import sha256
+from deltacam.batch.planning.task import perform
+from deltacam.batch.results import folder as folders
 from deltacam.batch.run import run
-from deltacam.batch.task import perform
 from deltacam.errors import DeltacamError, DrawingError
 from deltacam.model import Mode
 from tests.batch.scene import OPTIONS, bow_tie, damage, parts_of, plan_here, plate, tree

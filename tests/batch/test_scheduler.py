@@ -1,20 +1,22 @@
 """The address of a scheduler, TLS with real certificates, and what is said where nothing answers."""
 
 import http.server
+import re
 import shutil
 import socket
 import subprocess
 import threading
+import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
 import pytest
 
-from deltacam.batch import cluster, elsewhere, scheduler
+from deltacam.batch.cluster import connection, elsewhere, scheduler
+from deltacam.batch.cluster.scheduler import Tls
 from deltacam.batch.parts import Limits, Part
 from deltacam.batch.run import run
-from deltacam.batch.scheduler import Tls
 from deltacam.errors import DeltacamError
 from tests.batch.daskprocesses import Processes
 
@@ -60,7 +62,7 @@ def processes(tls: Tls, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pr
 def refusal(address: str, tls: Tls | None = None, *, timeout: float = 5.0) -> DeltacamError:
     with (
         pytest.raises(DeltacamError) as refused,
-        cluster.connect(address, tls=tls, timeout=timeout, patience=1.0),
+        connection.connect(address, tls=tls, timeout=timeout, patience=1.0),
     ):
         pass
     return refused.value
@@ -127,18 +129,18 @@ def test_nothing_there_is_said_at_once() -> None:
         port = free.getsockname()[1]
     refused = refusal(f"127.0.0.1:{port}")
     assert refused.what == f"no scheduler answers at tcp://127.0.0.1:{port}: connection refused"
-    assert "dask scheduler" in refused.hint
+    assert f"dask scheduler --host 127.0.0.1 --port {port}" in refused.hint
     assert "no scheduler answers at tcp://no.such.host.invalid:8786: " in refusal("no.such.host.invalid:8786").what
 
 
 def test_something_else_there_is_said_in_time() -> None:
     with socket.create_server(("127.0.0.1", 0)) as silent:
-        refused = refusal(f"127.0.0.1:{silent.getsockname()[1]}", timeout=1.0)
+        refused = refusal(f"127.0.0.1:{silent.getsockname()[1]}", timeout=0.4)
         assert "is not a Dask scheduler" in refused.what
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), http.server.SimpleHTTPRequestHandler) as web:
         threading.Thread(target=web.serve_forever).start()
         try:
-            refused = refusal(f"127.0.0.1:{web.server_port}", timeout=1.0)
+            refused = refusal(f"127.0.0.1:{web.server_port}", timeout=0.4)
         finally:
             web.shutdown()
         assert "is not a Dask scheduler" in refused.what
@@ -160,10 +162,22 @@ def test_a_scheduler_with_tls_lets_in_only_who_belongs_to_it(processes: Processe
 
 
 @needs_openssl
+def test_a_worker_is_told_from_its_scheduler(processes: Processes, tls: Tls) -> None:
+    worker = processes.add_worker("--no-nanny")
+    while not (found := re.findall(r"Start worker at: *(tls://\S+)", processes.words)):
+        assert worker.poll() is None
+        time.sleep(0.1)
+    refused = refusal(found[-1], tls)
+    processes.kill(worker)
+    assert "it says that it is a Worker" in refused.what
+    assert "Scheduler at:" in refused.hint
+
+
+@needs_openssl
 def test_a_batch_runs_over_tls_and_waits_for_a_worker_where_none_is_left(
     processes: Processes, tls: Tls, tmp_path: Path
 ) -> None:
-    refused = refusal(processes.address, tls)
+    refused = refusal(processes.address, tls)  # a worker that was killed has gone at once
     assert "has no worker: waited 1 s" in refused.what
     assert f"dask worker {processes.address}" in refused.hint
     worker = processes.add_worker("--no-nanny")
@@ -177,7 +191,7 @@ def test_a_batch_runs_over_tls_and_waits_for_a_worker_where_none_is_left(
     parts = [Part(f"{number}.dxf", tmp_path / f"{number}.dxf", {}) for number in range(4)]
     for part in parts:
         part.path.write_text("no drawing")
-    with cluster.connect(processes.address, tls=tls, tell=say) as found:
+    with connection.connect(processes.address, tls=tls, tell=say) as found:
         planner = partial(elsewhere.results, cluster=found, limits=Limits())
         batch = run(parts, tmp_path / "out", planner=planner, tell=lambda _row: processes.kill(worker))
     assert [row.outcome.status.value for row in batch.rows] == ["refused"] * 4

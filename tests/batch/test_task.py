@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from deltacam import pipeline
-from deltacam.batch import key as keys
-from deltacam.batch.folder import ENDINGS
-from deltacam.batch.key import key_of, sha256
 from deltacam.batch.parts import Part, Status, Task
-from deltacam.batch.task import get_ready, perform
+from deltacam.batch.planning import key as keys
+from deltacam.batch.planning.key import key_of, sha256
+from deltacam.batch.planning.task import get_ready, perform
+from deltacam.batch.results.folder import ENDINGS
 from deltacam.cutting.process import load_process
 from deltacam.drawing.reader import read_drawing
 from deltacam.errors import DrawingError

@@ -5,9 +5,9 @@ import re
 import pytest
 
 from deltacam.batch.parts import Batch, Status
-from deltacam.batch.reasons import reasons
-from deltacam.batch.text import to_text
-from deltacam.batch.totals import clock
+from deltacam.batch.results.reasons import reasons
+from deltacam.batch.results.text import to_text
+from deltacam.batch.results.totals import clock
 from tests.batch.rows import HOSTILE, facts, failed, passed, without
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from shapely import LineString, MultiLineString, Point
 
-from deltacam.batch.thumbnail import MOST_NUMBERS, SPAN, Lines, thumbnail, to_svg
+from deltacam.batch.results.thumbnail import MOST_NUMBERS, SPAN, Lines, thumbnail, to_svg
 from deltacam.drawing.reader import read_drawing
 from deltacam.geometry import curve as curves
 from deltacam.model import Curve, Drawing

@@ -5,7 +5,7 @@ It stands for what a drawing may do to a library in C: nothing that Python could
 
 import sys
 
-if "deltacam.batch.worker" in sys.orig_argv:
+if "deltacam.batch.planning.worker" in sys.orig_argv:
     import os
     import re
     import signal

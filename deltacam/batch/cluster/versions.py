@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import platform
 from collections.abc import Callable, Collection, Iterable, Mapping
 from importlib import metadata
-from pathlib import Path
 from typing import Any, Final, Protocol
+
+from deltacam.batch.planning.key import source
 
 PACKAGES: Final = ("deltacam", "numpy", "scipy", "shapely", "toppra", "ezdxf", "plotly", "distributed")
 """Programs and reports follow from these; Dask itself wants the last to be the same."""
@@ -37,7 +37,7 @@ def python(full: str) -> str:
 def differences(there: Mapping[str, str], ours: Mapping[str, str]) -> str:
     """In what another machine differs, in words; empty where it does not. What is not known of it does not count."""
     return ", ".join(
-        f"{name} {found}, here {ours[name]}" for name, found in there.items() if name in ours and found != ours[name]
+        f"{name} {found} (here {ours[name]})" for name, found in there.items() if name in ours and found != ours[name]
     )
 
 
@@ -46,8 +46,8 @@ def remedy(found: Iterable[Mapping[str, str]], ours: Mapping[str, str]) -> str:
     found = list(found)
     differing = [name for name in PACKAGES if any(there.get(name, ours[name]) != ours[name] for there in found)]
     if not differing:
-        return "let all machines have the same Python, and deltacam from the same place"
-    return f"there, pip install {' '.join(f'{name}=={ours[name]}' for name in differing)}, and start them again"
+        return "let all have the same Python, and deltacam from the same place; then start the workers again"
+    return f"there, pip install {' '.join(f'{name}=={ours[name]}' for name in differing)}; then start them again"
 
 
 def of_workers(run: Run, workers: Collection[str], ours: Mapping[str, str]) -> dict[str, dict[str, str]]:
@@ -72,7 +72,7 @@ def of_workers(run: Run, workers: Collection[str], ours: Mapping[str, str]) -> d
             else:
                 del found[worker]
     same = [worker for worker, there in found.items() if not differences(there, ours)]
-    for worker, answer in run(by_code(__name__, "source"), workers=same).items():
+    for worker, answer in run(by_code("deltacam.batch.cluster.remote", "source"), workers=same).items():
         found[worker][SOURCE] = answer if isinstance(answer, str) else MISSING
     return found
 
@@ -96,14 +96,3 @@ def _version(name: str) -> str:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
         return MISSING
-
-
-def source() -> str:
-    """A short hash of deltacam's modules: two states of one version, as in a clone, differ in it."""
-    package = Path(__file__).parent.parent
-    total = hashlib.sha256()
-    for path in sorted(package.rglob("*.py")):
-        code = path.read_bytes().replace(b"\r\n", b"\n")  # as git checks them out on Windows
-        total.update(f"{path.relative_to(package).as_posix()}\n{len(code)}\n".encode())
-        total.update(code)
-    return total.hexdigest()[:12]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from deltacam.batch.parts import Batch, Status
-from deltacam.batch.reasons import Reason, reasons
-from deltacam.batch.totals import clock, counted, totals, verdict
+from deltacam.batch.results.reasons import Reason, reasons
+from deltacam.batch.results.totals import clock, counted, totals, verdict
 from deltacam.plain import plain
 
 _MOST_REASONS: Final = 12

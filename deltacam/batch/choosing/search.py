@@ -10,8 +10,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Final
 
-from deltacam.batch.folder import PRIVATE
-from deltacam.batch.rules import FILE
+from deltacam.batch.choosing.rules import FILE
+from deltacam.batch.results.folder import PRIVATE
 from deltacam.errors import DeltacamError
 
 ENDING: Final = ".dxf"

@@ -10,10 +10,10 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import Final
 
-from deltacam.batch.columns import Column, columns, picture, urgency
 from deltacam.batch.parts import Batch, Row, Status
-from deltacam.batch.reasons import Reason, reasons
-from deltacam.batch.totals import clock, counted, totals, verdict
+from deltacam.batch.results.columns import Column, columns, picture, urgency
+from deltacam.batch.results.reasons import Reason, reasons
+from deltacam.batch.results.totals import clock, counted, totals, verdict
 from deltacam.report.page import frame
 from deltacam.report.picture import shown
 from deltacam.report.tables import table

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Final
 
-from deltacam.batch.patterns import check_pattern, matches, suggestion, written
-from deltacam.batch.search import ENDING, Kind, look_up, search
+from deltacam.batch.choosing.patterns import check_pattern, matches, suggestion, written
+from deltacam.batch.choosing.search import ENDING, Kind, look_up, search
 from deltacam.errors import DeltacamError
 
 _UNKNOWN_INSIDE: Final = (Kind.HIDDEN_FOLDER, Kind.LINKED_FOLDER, Kind.RULES)

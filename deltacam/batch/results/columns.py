@@ -8,8 +8,8 @@ from typing import Final, NamedTuple
 from urllib.parse import quote
 
 from deltacam.batch.parts import Batch, Row, Status
-from deltacam.batch.thumbnail import to_svg
-from deltacam.batch.totals import clock, counted
+from deltacam.batch.results.thumbnail import to_svg
+from deltacam.batch.results.totals import clock, counted
 from deltacam.report.picture import shown
 from deltacam.units import to_mm
 

@@ -20,10 +20,6 @@ _HEAD: Final = struct.Struct("<Q")
 READY: Final = b"ready"
 """The first message of a worker."""
 
-TOO_LITTLE: Final = "the memory that a part may take is not enough"
-MORE: Final = "let it take more with --memory, or plan fewer parts at a time with --jobs"
-"""What is said of a part that needs more, and what to do."""
-
 
 def send(stream: IO[bytes], message: bytes) -> None:
     """Write a message, its length first.
@@ -108,7 +104,7 @@ def plan_all(memory: int | None) -> None:
     leave_no_core()
     messages = listen(tasks)
     from deltacam.batch.parts import Result, Status
-    from deltacam.batch.task import get_ready, perform
+    from deltacam.batch.planning.task import get_ready, perform
 
     get_ready()
     if memory is not None:
@@ -134,7 +130,8 @@ def listen(stream: IO[bytes]) -> queue.SimpleQueue[bytes]:
                 waiting.put(message)
         except MemoryError:
             os.write(2, b"MemoryError\n")
-        os._exit(1)
+        finally:
+            os._exit(1)  # whatever it was: nobody would hear of a task any more
 
     threading.Thread(target=receive_all, daemon=True).start()
     return waiting

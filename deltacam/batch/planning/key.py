@@ -9,12 +9,17 @@ from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
 from importlib import metadata
+from pathlib import Path
 from typing import Any, Final
 
+import deltacam
 from deltacam.batch.parts import Part
 
 LAYOUT: Final = 1
 """Counts up when a batch writes other files for the same program, so that parts are planned again."""
+
+
+_KINDS: Final = (".py", ".toml", ".js", ".css")
 
 
 def sha256(data: bytes) -> str:
@@ -40,9 +45,20 @@ def key_of(part: Part, data: bytes) -> str:
     return sha256(text.encode())
 
 
+def source() -> str:
+    """A short hash of all files of deltacam: two states of one version, as in a clone, differ in it."""
+    package = Path(deltacam.__file__).parent
+    total = hashlib.sha256()
+    for path in sorted(path for path in package.rglob("*") if path.suffix in _KINDS):
+        content = path.read_bytes().replace(b"\r\n", b"\n")  # as git checks them out on Windows
+        total.update(f"{path.relative_to(package).as_posix()}\n{len(content)}\n".encode())
+        total.update(content)
+    return total.hexdigest()[:12]
+
+
 @cache
 def _version() -> str:
-    return metadata.version("deltacam")
+    return f"{metadata.version('deltacam')} {source()}"
 
 
 def _plain(value: Any) -> Any:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, Final, Protocol
 
-from deltacam.batch import versions
+from deltacam.batch.cluster import versions
 from deltacam.errors import DeltacamError
 from deltacam.plain import plain
 

@@ -17,7 +17,6 @@ from deltacam.plain import plain
 Loaded = TypeVar("Loaded")
 
 DEFAULT_PORT: Final = 8786
-START: Final = f"start one with: dask scheduler --port {DEFAULT_PORT}"
 
 _ADDRESS: Final = re.compile(r"(?:(tcp|tls)://)?(\[[0-9A-Fa-f:.]+\]|[^\s/:@\[\]]+):([0-9]{1,5})/?")
 _THREE_FILES: Final = "give --tls-ca FILE, --tls-cert FILE and --tls-key FILE"
@@ -92,6 +91,11 @@ class Address:
         host = f"[{self.host}]" if ":" in self.host else self.host
         return f"{'tls' if self.tls else 'tcp'}://{host}:{self.port}"
 
+    @property
+    def start(self) -> str:
+        """How a scheduler is started there."""
+        return f"start one there with: dask scheduler --host {self.host} --port {self.port}"
+
 
 def address_of(text: str, tls: Tls | None) -> Address:
     """The address that a text says: ``tcp://host:8786``, ``tls://host:8786``, or ``host:8786``, which means tcp.
@@ -134,9 +138,9 @@ def reach(address: Address, *, timeout: float) -> None:
     except ssl.SSLError as problem:
         raise _distrust(address, problem) from problem
     except (OSError, UnicodeError) as problem:
-        raise DeltacamError(f"no scheduler answers at {address}: {_reason(problem)}", hint=START) from problem
+        raise DeltacamError(f"no scheduler answers at {address}: {_reason(problem)}", hint=address.start) from problem
     if not heard:
-        raise DeltacamError(f"what listens at {address} is not a Dask scheduler", hint=START)
+        raise DeltacamError(f"what listens at {address} is not a Dask scheduler", hint=address.start)
 
 
 def _hear_in_the_open(connection: socket.socket, address: Address, timeout: float) -> bool:

@@ -6,9 +6,8 @@ from pathlib import PurePosixPath
 from typing import Any, Final
 
 from deltacam import pipeline
-from deltacam.batch.parts import Facts, Outcome, Result, Status, Task
-from deltacam.batch.thumbnail import Lines, thumbnail
-from deltacam.batch.worker import MORE, TOO_LITTLE
+from deltacam.batch.parts import MORE, TOO_LITTLE, Facts, Outcome, Result, Status, Task
+from deltacam.batch.results.thumbnail import Lines, thumbnail
 from deltacam.drawing.reader import read_drawing
 from deltacam.errors import DeltacamError
 from deltacam.model import Report

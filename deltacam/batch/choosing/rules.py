@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from deltacam.batch.patterns import check_pattern, matches
+from deltacam.batch.choosing.patterns import check_pattern, matches
 from deltacam.defaults import name_or_file, unit_name
 from deltacam.errors import DeltacamError
 from deltacam.settings import Table, read_table

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from typing import Any, Final
 
 from deltacam.batch.parts import Batch, Facts, Outcome, Row, Status
-from deltacam.batch.totals import totals
+from deltacam.batch.results.totals import totals
 from deltacam.plain import plain
 from deltacam.units import to_mm
 

@@ -6,20 +6,19 @@ What goes to the cluster and back is bytes, so neither the scheduler nor the tra
 from __future__ import annotations
 
 import asyncio
-import logging
 import platform
 import time
-import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib import metadata
 from typing import Any, Final, Literal
 
-from deltacam.batch import remote, versions
-from deltacam.batch.crew import Crew, Tell
-from deltacam.batch.scheduler import START, Address, Tls, address_of, reach
+from deltacam.batch.cluster import remote, versions
+from deltacam.batch.cluster.crew import Crew, Tell
+from deltacam.batch.cluster.quiet import quiet
+from deltacam.batch.cluster.scheduler import Address, Tls, address_of, reach
 from deltacam.errors import DeltacamError
 from deltacam.plain import plain
 
@@ -38,7 +37,7 @@ _RECONNECTS: Final = 120.0  # s
 _PAUSE: Final = 1.0  # s between two attempts to connect again
 _LONGEST: Final = 300  # characters of what a worker said
 _NO_LIMIT: Final = 2**60  # bytes of a task above which Dask would warn
-_NOISY: Final = ("distributed", "tornado", "asyncio")
+_REMEMBERED: Final = 10  # messages; Dask would keep the last 1000, with the drawings in them
 
 
 @contextmanager
@@ -64,7 +63,7 @@ def connect(
             the versions of this machine.
     """
     where = address_of(address, tls)
-    with _quiet():
+    with quiet(VersionMismatchWarning):  # they are compared
         reach(where, timeout=timeout)
         cluster = Cluster(where, _client(where, timeout), timeout, tell)
         try:
@@ -116,23 +115,28 @@ class Cluster:
         """Whether Dask has given up."""
         return self._client.status in ("closing", "closed")
 
-    def submit(self, work: bytes, *, key: str, run: str) -> tuple[Any, frozenset[str]]:
+    def submit(self, work: bytes, *, key: str, run: str, only: Collection[str]) -> Any:
         """Let a part be planned.
 
         Args:
             work: as `remote.perform` takes it.
             key: names the task.
             run: names the batch.
+            only: the workers that may plan it; empty for all.
 
         Returns:
-            the future, of what `_plan_there` returns; and the workers that it is for, where it is not for all.
+            the future, of what `_plan_there` returns; None where the connection has just been lost.
         """
-        only = sorted(self.crew.workers()) if self.crew.is_mixed else None
-        with dask.config.set({"distributed.admin.large-graph-warning-threshold": _NO_LIMIT}):
-            future = self._client.submit(
-                _plan_there(), work, run, self.crew.ours, key=key, pure=False, workers=only, allow_other_workers=False
-            )
-        return future, frozenset(only or ())
+        workers = sorted(only) or None
+        try:
+            with dask.config.set({"distributed.admin.large-graph-warning-threshold": _NO_LIMIT}):
+                return self._client.submit(
+                    _plan_there(), work, run, self.crew.ours, key=key, pure=False, workers=workers
+                )
+        except Exception:
+            if self.connected:
+                raise
+            return None
 
     def collect(self, future: Any) -> Answer:
         """What came of a future that is done."""
@@ -195,7 +199,11 @@ class Cluster:
 
     def threads(self) -> dict[str, int] | None:
         """The threads of every worker, by its address; None where the scheduler does not answer."""
-        found: dict[str, int] | None = self._ask(self._client.scheduler.ncores) if self.connected else None
+
+        async def ask() -> Any:
+            return await self._client.scheduler.ncores()
+
+        found: dict[str, int] | None = self._ask(ask)
         return found
 
     def of_scheduler(self) -> dict[str, str]:
@@ -209,12 +217,14 @@ class Cluster:
 
         return self._ask(ask) or {}
 
-    def _ask(self, question: Callable[..., Any], **given: Any) -> Any:
-        """What a coroutine of Dask's returns; None where nobody answers in time."""
-        if not self.connected:
-            return None
+    def _ask(self, question: Callable[[], Any]) -> Any:
+        """What a coroutine answers; None where there is no connection, or no answer in time."""
+
+        async def ask() -> Any:
+            return await question() if self.connected else None
+
         with suppress(OSError, TimeoutError):
-            return self._client.sync(question, callback_timeout=_ANSWERS, **given)
+            return self._client.sync(ask, callback_timeout=_ANSWERS) if self.connected else None
         return None
 
 
@@ -231,7 +241,7 @@ def _plan_there() -> Callable[..., tuple[str, str, bytes]]:
         try:
             if version("deltacam") != ours["deltacam"]:  # its modules may be other ones
                 return worker.address, f"deltacam {version('deltacam')}, here {ours['deltacam']}", b""
-            from deltacam.batch.remote import perform
+            from deltacam.batch.cluster.remote import perform
 
             memory = worker.memory_manager.memory_limit
             unfit, data = perform(work, run=run, ours=ours, threads=worker.state.nthreads, memory=memory)
@@ -246,38 +256,41 @@ def _client(address: Address, timeout: float) -> Any:
     """A connection to a scheduler that has been reached.
 
     Raises:
-        DeltacamError: it does not speak as a scheduler of Dask does.
+        DeltacamError: it does not answer as a scheduler of Dask does.
     """
+    dask_of: Any = distributed  # whose types are not complete
+    tls = address.tls
     files = (
-        {
-            "tls_ca_file": str(address.tls.ca_file),
-            "tls_client_cert": str(address.tls.cert_file),
-            "tls_client_key": str(address.tls.key_file),
-        }
-        if address.tls
-        else {}
+        {"tls_ca_file": tls.ca_file, "tls_client_cert": tls.cert_file, "tls_client_key": tls.key_file} if tls else {}
     )
-    make: Any = distributed  # whose types are not complete
-    security = make.Security(require_encryption=address.tls is not None, **files)
+    security = dask_of.Security(require_encryption=tls is not None, **{name: str(file) for name, file in files.items()})
     try:
-        return make.Client(str(address), timeout=timeout, security=security, set_as_default=False, name="deltacam")
+        with ThreadPoolExecutor(1) as elsewhere:  # this thread may have a loop that runs already
+            elsewhere.submit(asyncio.run, _check_role(address, security, timeout)).result()
+        with dask.config.set({"distributed.admin.low-level-log-length": _REMEMBERED}):
+            return dask_of.Client(
+                str(address), timeout=timeout, security=security, set_as_default=False, name="deltacam"
+            )
     except (OSError, TimeoutError, ValueError, ImportError, RuntimeError) as problem:
-        what = f"what listens at {address} does not answer as a Dask scheduler: {plain(str(problem), longest=_LONGEST)}"
-        hint = "is our certificate signed by its authority?" if address.tls else START
-        raise DeltacamError(what, hint=hint) from problem
+        reason = plain(str(problem) or type(problem).__name__, longest=_LONGEST)
+        what = f"what listens at {address} does not answer as a scheduler: {reason}"
+        raise DeltacamError(what, hint="the scheduler says its address when it starts, as 'Scheduler at:'") from problem
 
 
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Within the block Dask writes nothing on stderr: what counts is told or raised."""
-    names = [name for name in logging.Logger.manager.loggerDict if name.split(".")[0] in _NOISY]
-    levels = {logger: logger.level for logger in map(logging.getLogger, (*_NOISY, *names))}
-    try:
-        for logger in levels:
-            logger.setLevel(logging.CRITICAL + 1)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", VersionMismatchWarning)  # they are compared
-            yield
-    finally:
-        for logger, level in levels.items():
-            logger.setLevel(level)
+async def _check_role(address: Address, security: Any, timeout: float) -> None:
+    """Ask who is there: a worker would let a client wait for ever.
+
+    Raises:
+        OSError, TimeoutError: it does not answer.
+        ValueError: it is no scheduler.
+    """
+    dask_of: Any = distributed
+    async with asyncio.timeout(timeout):
+        connection = await dask_of.comm.connect(str(address), timeout=timeout, **security.get_connection_args("client"))
+        try:
+            await connection.write({"op": "identity", "reply": True})
+            found: dict[str, Any] = await connection.read()
+        finally:
+            connection.abort()
+    if "workers" not in found:
+        raise ValueError(f"it says that it is a {found.get('type', 'stranger')}")

@@ -9,7 +9,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import Final
 
 from deltacam.batch.parts import Limits, Result, Task
-from deltacam.batch.process import WorkerProcess
+from deltacam.batch.planning.process import WorkerProcess
 
 _AHEAD: Final = 2
 """Tasks for every process: one that it plans, and one that waits while the result of another is stored."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 import queue
 import threading
 import uuid
@@ -12,9 +11,10 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any, Final
 
-from deltacam.batch.cluster import Answer, Cluster
+from deltacam.batch.cluster.connection import Answer, Cluster
+from deltacam.batch.cluster.remote import pack, unpack
 from deltacam.batch.parts import Limits, Result, Status, Task
-from deltacam.batch.process import ended
+from deltacam.batch.planning.process import ended
 
 _AHEAD: Final = 2
 """Tasks for every thread of a worker: one that it plans, and one that waits while the result of another is stored."""
@@ -95,9 +95,10 @@ class _Flight:
         workers = self._cluster.crew.workers()
         self._call_back_stranded(workers)
         while len(self._sent) < _AHEAD * sum(workers.values()) and (task := self._next()) is not None:
-            self._send(task)
-        if self._no_more and not self._sent and not self._again and self._suspects and workers:
-            self._send(self._suspects.popleft(), alone=True)
+            if not self._send(task, workers):
+                return
+        if workers and self._no_more and not self._sent and not self._again and self._suspects:
+            self._send(self._suspects.popleft(), workers, alone=True)
 
     def land(self) -> tuple[Task, Result] | None:
         """The next task that is done, and what came of it; None where there is none yet, or it goes off again."""
@@ -131,17 +132,23 @@ class _Flight:
         self._no_more = task is None
         return task
 
-    def _send(self, task: Task, *, alone: bool = False) -> None:
-        work = pickle.dumps((task, self._limits, self._share))
+    def _send(self, task: Task, workers: Mapping[str, int], *, alone: bool = False) -> bool:
+        """Whether a task is on its way; where not, it is to be sent again."""
+        only = frozenset(workers if self._cluster.crew.is_mixed else ())
+        work = pack((task, self._limits, self._share))
         key = f"deltacam-part-{task.key}-{self._run}-{next(self._count)}"
-        future, only = self._cluster.submit(work, key=key, run=self._run)
+        future = self._cluster.submit(work, key=key, run=self._run, only=only)
+        if future is None:
+            (self._suspects if alone else self._again).append(task)
+            return False
         self._sent[future] = _Sent(task, only, alone)
         future.add_done_callback(self._landed.put)
+        return True
 
     def _judge(self, sent: _Sent, answer: Answer) -> tuple[Task, Result] | None:
         task = sent.task
         if answer.kind == "planned":
-            result: Result | None = pickle.loads(answer.data)  # noqa: S301 - from a cluster that we trust with more
+            result: Result | None = unpack(answer.data)
             return None if result is None else (task, result)
         if answer.kind == "fault":
             what = f"a fault on the cluster: {answer.words}"

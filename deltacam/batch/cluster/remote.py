@@ -7,47 +7,74 @@ from __future__ import annotations
 
 import pickle
 import threading
+import time
+import zlib
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
+from functools import lru_cache
+from typing import Any, Final
 
-from deltacam.batch import versions
+from deltacam.batch.cluster import versions
 from deltacam.batch.parts import Limits, Result, Task
-from deltacam.batch.process import WorkerProcess
+from deltacam.batch.planning import key
+from deltacam.batch.planning.process import WorkerProcess
 from deltacam.errors import DeltacamError
 from deltacam.machine import share_of_memory
 
 _IDLE: Final = 60.0  # s after which processes without work end: who asked for them may be gone
+_FRESH: Final = 1.0  # s
 _REMEMBERED: Final = 1000
 _MOST_OF_MEMORY: Final = 0.8
 
-_LOADED: Final = versions.here()
-"""What this worker began with; the processes that it starts have what is installed by then."""
+_LOADED: Final = key.source()
+"""What this worker began with; the processes that it starts have what is there by then."""
 
 
 def perform(work: bytes, *, run: str, ours: Mapping[str, str], threads: int, memory: int | None) -> tuple[str, bytes]:
     """Plan a part of a batch, where this worker is fit for it.
 
     Args:
-        work: a pickled `Task`, its `Limits`, and whether the memory is its share of this worker's.
+        work: a `Task`, its `Limits`, and whether the memory is its share of this worker's, packed.
         run: names the batch.
         ours: the versions of who asks.
         threads: of this worker.
         memory: what this worker may take, bytes; None where that is not limited.
 
     Returns:
-        why nothing can be planned here, or nothing; and the pickled `Result`, or None where the batch was stopped.
+        why nothing can be planned here, or nothing; and the `Result`, or None where the batch was stopped, packed.
     """
-    if unlike := versions.differences(_LOADED, ours) or versions.differences(versions.here(), ours):
+    if unlike := versions.differences(_have(int(time.monotonic() / _FRESH)), ours):
         return unlike, b""
-    task, limits, share = pickle.loads(work)  # noqa: S301 - a Dask worker does whatever its scheduler says
+    task, limits, share = unpack(work)
     if share:
         limits = replace(limits, memory=_share(threads, memory))
     try:
-        return "", pickle.dumps(_visit(run).perform(task, limits))
+        return "", pack(_visit(run).perform(task, limits))
     except DeltacamError as problem:
         return f"{problem} ({problem.hint})" if problem.hint else str(problem), b""
+
+
+def pack(value: Any) -> bytes:
+    """The value as few bytes: a scheduler remembers the last 1000 messages to every worker."""
+    return zlib.compress(pickle.dumps(value), level=1)
+
+
+def unpack(data: bytes) -> Any:
+    """What was packed, by somebody who may do here whatever they want: who reaches a scheduler may, and a scheduler."""
+    return pickle.loads(zlib.decompress(data))  # noqa: S301 - as said
+
+
+def source() -> str:
+    """What deltacam's source is here, and whether that has changed since this worker began."""
+    now = key.source()
+    return now if now == _LOADED else f"{now}, but {_LOADED} as the worker was started"
+
+
+@lru_cache(maxsize=1)
+def _have(_when: int) -> Mapping[str, str]:
+    """The versions that this worker plans with, looked up from time to time: somebody may install others."""
+    return {**versions.here(), versions.SOURCE: source()}
 
 
 def halt(run: str) -> set[str]:

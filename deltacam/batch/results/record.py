@@ -14,8 +14,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from deltacam.batch.folder import ResultFolder
 from deltacam.batch.parts import Facts, Outcome, Status, Stored
+from deltacam.batch.results.folder import ResultFolder
 from deltacam.errors import ProgramError
 from deltacam.program.atomic import write_whole
 

@@ -12,8 +12,8 @@ import threading
 from contextlib import suppress
 from typing import IO, Any, Final
 
-from deltacam.batch import worker
-from deltacam.batch.parts import Limits, Outcome, Result, Status, Task
+from deltacam.batch.parts import MORE, TOO_LITTLE, Limits, Outcome, Result, Status, Task
+from deltacam.batch.planning import worker
 from deltacam.errors import DeltacamError
 from deltacam.plain import plain
 
@@ -232,7 +232,7 @@ def _crashed(running: _Running, task: Task) -> Outcome:
             hint = "the system may have run out of memory: plan fewer parts at a time with --jobs"
     words = running.last_words()
     if any(sign in words for sign in _OUT_OF_MEMORY):
-        return ended(Status.MEMORY, task, worker.TOO_LITTLE, worker.MORE)
+        return ended(Status.MEMORY, task, TOO_LITTLE, MORE)
     return ended(Status.CRASHED, task, f"{what}: {words}" if words else what, hint)
 
 

@@ -1,0 +1,1 @@
+"""Which drawings a batch plans, and what is different for which."""

@@ -1,0 +1,1 @@
+"""Parts planned by the workers of a Dask cluster."""

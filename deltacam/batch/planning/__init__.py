@@ -1,0 +1,1 @@
+"""Parts planned in processes of their own, on this machine."""

@@ -1,0 +1,1 @@
+"""The folder of results, and what it says of all parts."""
