@@ -57,6 +57,9 @@ else:
 """Runs in every process of the cluster: parts of some names do harm there."""
 
 
+_LOCAL = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0")
+
+
 class Processes:
     """A scheduler and its workers; all of them end with the block.
 
@@ -72,7 +75,7 @@ class Processes:
         (folder / "sitecustomize.py").write_text(SITE)
         self._file = folder / "scheduler.json"
         host = "tls://127.0.0.1" if options else "tcp://127.0.0.1"
-        self.scheduler = self._start("scheduler", "--host", host, "--port", "0", "--no-dashboard")
+        self.scheduler = self._start("scheduler", "--host", host, "--port", "0")
 
     def __enter__(self) -> "Processes":
         return self
@@ -99,7 +102,7 @@ class Processes:
     def add_worker(self, *options: str, lies: str = "") -> subprocess.Popen[bytes]:
         """Start a worker with one thread; ``lies``: a package and the version that it says."""
         address = self.address
-        worker = self._start("worker", address, "--nthreads", "1", "--no-dashboard", *options, lies=lies)
+        worker = self._start("worker", address, "--host", "127.0.0.1", "--nthreads", "1", *options, lies=lies)
         self.workers.append(worker)
         return worker
 
@@ -118,7 +121,7 @@ class Processes:
         added = {"TEST_ROLE": role, "TEST_LIES": lies, "TEST_FOLDER": str(self._folder)}
         with (self._folder / "words").open("ab") as words:
             process = subprocess.Popen(
-                [sys.executable, "-m", f"distributed.cli.dask_{role}", *options, *own, *self._options],
+                [sys.executable, "-m", f"distributed.cli.dask_{role}", *options, *own, *_LOCAL, *self._options],
                 stdin=subprocess.PIPE,
                 stdout=words,
                 stderr=words,

@@ -15,39 +15,40 @@ import pytest
 
 from deltacam.batch.cluster import connection, elsewhere, scheduler
 from deltacam.batch.cluster.scheduler import Tls
-from deltacam.batch.parts import Limits, Part
+from deltacam.batch.parts import Limits, Part, Row
 from deltacam.batch.run import run
 from deltacam.errors import DeltacamError
-from tests.batch.daskprocesses import Processes
-
-needs_openssl = pytest.mark.skipif(shutil.which("openssl") is None, reason="makes certificates")
+from tests.batch.daskprocesses import ROOT, Processes
 
 
-def certify(folder: Path, name: str) -> Tls:
-    """An authority of its own, and a certificate that it signed, as docs/how-to/batch-on-a-cluster.md makes them."""
-    folder.mkdir(exist_ok=True)
-    authority, own = folder / f"{name}-ca", folder / name
-    new = ("openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes")
-    signs = ("-subj", f"/CN=authority of {name}", "-addext", "keyUsage=critical,keyCertSign,cRLSign")
-    signed = ("-subj", f"/CN={name}", "-addext", "basicConstraints=critical,CA:FALSE")
-    by = ("-CA", f"{authority}.pem", "-CAkey", f"{authority}.key")
-    for command in (
-        (*new, *signs, "-keyout", f"{authority}.key", "-out", f"{authority}.pem"),
-        (*new, *signed, *by, "-keyout", f"{own}.key", "-out", f"{own}.pem"),
-    ):
-        subprocess.run(command, check=True, capture_output=True)
-    return Tls(Path(f"{authority}.pem"), Path(f"{own}.pem"), Path(f"{own}.key"))
+def can_certify() -> bool:
+    """Whether there is an openssl that signs a certificate as it makes it."""
+    if shutil.which("openssl") is None:
+        return False
+    said = subprocess.run(["openssl", "version"], check=True, capture_output=True, text=True).stdout
+    return re.match(r"OpenSSL [3-9]", said) is not None
+
+
+needs_openssl = pytest.mark.skipif(not can_certify(), reason="OpenSSL 3 makes certificates")
+
+
+def certify(folder: Path) -> Tls:
+    """An authority of its own, and a certificate that it signed, as the page makes them."""
+    page = (ROOT / "docs" / "how-to" / "batch-on-a-cluster.md").read_text()
+    (commands,) = re.findall(r"```sh\n(openssl .*?)```", page, flags=re.DOTALL)
+    subprocess.run(["sh", "-e", "-c", commands], check=True, capture_output=True, cwd=folder)
+    return Tls(folder / "ca.pem", folder / "saw.pem", folder / "saw.key")
 
 
 @pytest.fixture(scope="module")
 def tls(tmp_path_factory: pytest.TempPathFactory) -> Tls:
-    return certify(tmp_path_factory.mktemp("ours"), "ours")
+    return certify(tmp_path_factory.mktemp("ours"))
 
 
 @pytest.fixture(scope="module")
 def strangers(tmp_path_factory: pytest.TempPathFactory) -> Tls:
     """Of another authority."""
-    return certify(tmp_path_factory.mktemp("strangers"), "strangers")
+    return certify(tmp_path_factory.mktemp("strangers"))
 
 
 @pytest.fixture(scope="module")
@@ -114,8 +115,8 @@ def test_a_file_that_is_not_what_it_should_be_is_named(tls: Tls, strangers: Tls,
         (Tls(tmp_path / "none", tls.cert_file, tls.key_file), tmp_path / "none", "cannot be read: no such file"),
         (Tls(wrong, tls.cert_file, tls.key_file), wrong, "not a certificate"),
         (Tls(tls.ca_file, wrong, tls.key_file), wrong, "not a certificate"),
-        (Tls(tls.ca_file, tls.cert_file, wrong), wrong, "not the key of ours.pem"),
-        (Tls(tls.ca_file, tls.cert_file, strangers.key_file), strangers.key_file, "not the key of ours.pem"),
+        (Tls(tls.ca_file, tls.cert_file, wrong), wrong, "not the key of saw.pem"),
+        (Tls(tls.ca_file, tls.cert_file, strangers.key_file), strangers.key_file, "not the key of saw.pem"),
         (Tls(tls.ca_file, tls.cert_file, locked), locked, "without a password"),
     ):
         refused = refusal("tls://127.0.0.1:1", files)
@@ -207,3 +208,32 @@ def test_what_listens_without_tls_is_told_from_a_scheduler_with_it(tls: Tls) -> 
         finally:
             web.shutdown()
     assert "does not speak TLS" in refused.what
+
+
+def test_a_scheduler_that_is_lost_for_good_ends_the_batch_and_what_is_done_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connection, "_RECONNECTS", 0.0)
+    parts = [Part(f"{number}.dxf", tmp_path / f"{number}.dxf", {}) for number in range(8)]
+    for part in parts:
+        part.path.write_text("no drawing")
+    done: list[str] = []
+    said: list[str] = []
+
+    with Processes(tmp_path) as processes:
+        processes.add_worker("--no-nanny")
+
+        def tell(row: Row) -> None:
+            done.append(row.part)
+            processes.kill(processes.scheduler)
+
+        with connection.connect(processes.address, timeout=5.0, tell=said.append) as found:
+            planner = partial(elsewhere.results, cluster=found, limits=Limits())
+            with pytest.raises(DeltacamError, match="the connection to the scheduler at tcp") as refused:
+                run(parts, tmp_path / "out", planner=planner, tell=tell)
+    assert "was lost: no scheduler answers" in refused.value.what
+    assert "run it again" in refused.value.hint
+    assert said == ["the connection to the scheduler is lost: trying again for 2 min"]
+    assert 1 <= len(done) < len(parts)
+    recorded = (tmp_path / "out" / ".deltacam-batch" / "record.jsonl").read_text()
+    assert all(f'"{name}"' in recorded for name in done)

@@ -62,7 +62,7 @@ class Crew:
         until = time.monotonic() + patience
         while not (threads := self._cluster.threads() or {}):
             if time.monotonic() > until:
-                hint = f"start one on every machine with: dask worker {self._address} --nworkers 1 --nthreads CORES"
+                hint = f"start one with: dask worker {self._address} --host ITS-ADDRESS --nworkers 1 --nthreads CORES"
                 raise DeltacamError(f"the scheduler at {self._address} has no worker: waited {patience:g} s", hint=hint)
             time.sleep(_PAUSE / 4)
         of_workers = versions.of_workers(self._cluster.run, threads, self.ours)
