@@ -20,9 +20,9 @@ from deltacam.plain import plain
 _ENVIRONMENT: Final = {
     # There is a process for every core already.
     **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
-    # glibc keeps up to 256 MiB that an array has left for the next one, also of arrays up to 32 MiB, its most. By itself
-    # it gives part of it back, a worker of Dask lets it give back all above 64 kB, and what is given back must be
-    # cleared by the kernel before it can be used again: that took up to half of the time.
+    # glibc keeps up to 256 MiB that an array has left for the next one, also of arrays up to 32 MiB, its most. By
+    # itself it gives part of it back, a worker of Dask lets it give back all above 64 kB, and what is given back must
+    # be cleared by the kernel before it can be used again: that took up to half of the time.
     "MALLOC_TRIM_THRESHOLD_": str(2**28),
     "MALLOC_MMAP_THRESHOLD_": str(2**25),
 }
