@@ -89,13 +89,13 @@ class Watched:
 
 
 def test_few_tasks_are_taken_ahead_and_no_process_is_started_without_a_task(parts: Path) -> None:
-    tasks = Watched(parts_of(parts)[1], 6)
+    tasks = Watched(parts_of(parts)[1], 4)
     stop = threading.Event()
     found: list[str] = []
     for task, _ in local.results(tasks, jobs=1, limits=LIMITS, stop=stop):
         found.append(task.name)
         assert tasks.taken <= len(found) + 2
-    assert sorted(found) == [f"{n}.dxf" for n in range(6)]
+    assert sorted(found) == [f"{n}.dxf" for n in range(4)]
     results = local.results(Watched(parts_of(parts)[1], 1), jobs=3, limits=LIMITS, stop=stop)
     next(results)
     assert len(children(os.getpid())) == 1
@@ -105,7 +105,7 @@ def test_few_tasks_are_taken_ahead_and_no_process_is_started_without_a_task(part
 
 
 def test_after_a_stop_what_is_begun_is_finished_and_nothing_else_is(parts: Path) -> None:
-    tasks = Watched(parts_of(parts)[1], 6)
+    tasks = Watched(parts_of(parts)[1], 4)
     stop = threading.Event()
     results = local.results(tasks, jobs=1, limits=LIMITS, stop=stop)
     first, _ = next(results)

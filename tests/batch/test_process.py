@@ -23,7 +23,7 @@ from deltacam.batch.run import run
 from deltacam.errors import DeltacamError
 from tests.batch.scene import OPTIONS, children, damage, ended, parts_of, plate, with_faults
 
-LIMITS: Final = Limits(time=4.0, memory=500 * 2**20)
+LIMITS: Final = Limits(time=10.0, memory=500 * 2**20)
 PASSED: Final = ("a", "print", "z")
 
 
@@ -41,7 +41,7 @@ def batch(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Batch]:
     for name in (*PASSED, "abort", "break", "close", "eat", "exit", "hang", "words"):
         plate(folder / "parts" / f"{name}.dxf")
     # Alone to split it into lines takes more than there is.
-    comment = "999\nnothing that is cut\n" * 2_500_000
+    comment = "999\nnothing that is cut\n" * 3_000_000
     (folder / "parts" / "large.dxf").write_text(f"{comment}0\nSECTION\n2\nENTITIES\n0\nENDSEC\n0\nEOF\n")
     planner = partial(local.results, jobs=2, limits=LIMITS)
     return folder, run(parts_of(folder / "parts"), folder / "out", planner=planner)
@@ -74,7 +74,7 @@ def test_what_a_part_does_to_its_process_is_its_row_and_no_other(batch: tuple[Pa
         "break": (Status.CRASHED, "its process was ended by SIGSEGV"),
         "close": (Status.CRASHED, "its process ended with exit code 1: OSError: [Errno 9] Bad file descriptor"),
         "exit": (Status.CRASHED, "its process ended with exit code 3"),
-        "hang": (Status.TIMEOUT, "not planned within 4 s"),
+        "hang": (Status.TIMEOUT, "not planned within 10 s"),
         "words": (Status.CRASHED, "its process ended with exit code 4: \\x1b[31mthe \ufffd last word"),
     }
     assert {outcome.robot for outcome in outcomes(batch[1]).values()} == {OPTIONS["robot"].name}
