@@ -98,7 +98,7 @@ def _summarize(folder: ResultFolder, batch: Batch) -> None:
     """
     try:
         for name, write in SUMMARIES.items():
-            folder.write(name, write(batch).encode(errors="backslashreplace"))
+            folder.write(name, write(batch).encode())
     except ProgramError:
         for name in SUMMARIES:
             folder.remove(name)

@@ -251,6 +251,8 @@ def test_names_of_any_bytes_are_written_in_all_summaries(tmp_path: Path) -> None
         assert len(list(csv.reader(stream))) == 1 + len(names)
     assert "<b>" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
     assert planned(batch(tmp_path)) == []
+    (tmp_path / "parts" / names[0]).unlink()
+    assert batch(tmp_path, notes=["\udcff"]).notes[0] == "\udcff"
     assert damage(tmp_path / "out") == []
 
 
