@@ -1,6 +1,7 @@
 """Chunks on one and on several processes: the same setpoints, errors that name their move, nothing left behind."""
 
 import multiprocessing
+import threading
 import time
 from dataclasses import replace
 from functools import partial
@@ -98,8 +99,9 @@ def test_progress_is_told_after_every_chunk(jobs: int) -> None:
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_move_without_a_motion_is_named(jobs: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    if jobs > 1 and threading.active_count() > 1:
+        pytest.skip("beside threads of other tests processes are spawned, and know nothing of the next line")
     monkeypatch.setattr(module, "run", partial(refuse, 0.0231))
-    monkeypatch.setattr(module.threading, "active_count", lambda: 1)  # a fork knows the line above, whatever else runs
     with pytest.raises(InfeasibleError, match=r"no motion within the limits passes 1\.000 mm") as caught:
         schedule(moves(), FREE, jobs=jobs)
     assert caught.value.where == "contour 3"
