@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copyreg
+
 
 class DeltacamError(Exception):
     """A problem in the input, with what is wrong, where, and what to do.
@@ -24,12 +26,8 @@ class DeltacamError(Exception):
         return f"{self.where}: {self.what}" if self.where else self.what
 
     def __reduce__(self) -> tuple[object, ...]:
-        return (_rebuild, (type(self), self.what, self.where, self.hint))
-
-
-def _rebuild(kind: type[DeltacamError], what: str, where: str, hint: str) -> DeltacamError:
-    """An error of ``kind`` from its parts; keyword-only fields do not pickle by themselves."""
-    return kind(what, where=where, hint=hint)
+        # Not through ``__init__``, whose parameters are other ones in some kinds of error.
+        return (copyreg.__newobj__, (type(self), *self.args), vars(self))  # type: ignore[attr-defined]
 
 
 class DrawingError(DeltacamError):

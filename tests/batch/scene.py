@@ -137,9 +137,8 @@ def children(pid: int) -> list[int]:
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
             state, parent = stat.read_text().rpartition(")")[2].split()[:2]
-            tracks = (
-                b"resource_tracker" in (stat.parent / "cmdline").read_bytes()
-            )  # of Python, once a process is spawned
+            # Python starts a tracker of its own once a process is spawned.
+            tracks = b"resource_tracker" in (stat.parent / "cmdline").read_bytes()
             if int(parent) == pid and state not in "ZX" and not tracks:
                 found.append(int(stat.parent.name))
     return sorted(found)

@@ -1,7 +1,8 @@
 """Chunks on one and on several processes: the same setpoints, errors that name their move, nothing left behind."""
 
 import multiprocessing
-import threading
+import subprocess
+import sys
 import time
 from dataclasses import replace
 from functools import partial
@@ -97,11 +98,22 @@ def test_progress_is_told_after_every_chunk(jobs: int) -> None:
     assert told == np.cumsum(sizes).tolist()
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_a_move_without_a_motion_is_named(jobs: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    if jobs > 1 and threading.active_count() > 1:
-        pytest.skip("beside threads of other tests processes are spawned, and know nothing of the next line")
+def test_a_move_without_a_motion_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "run", partial(refuse, 0.0231))
+    name_the_move(jobs=1)
+
+
+def test_a_move_without_a_motion_is_named_by_another_process() -> None:
+    # Only in a process without threads of other tests are the others forked, and know of the replaced function.
+    code = (
+        "from tests.motion.test_schedule import *; module.CHUNK = 500; module.run = partial(refuse, 0.0231)\n"
+        "name_the_move(jobs=2); print('named')"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert found.stdout == "named\n", found.stderr
+
+
+def name_the_move(jobs: int) -> None:
     with pytest.raises(InfeasibleError, match=r"no motion within the limits passes 1\.000 mm") as caught:
         schedule(moves(), FREE, jobs=jobs)
     assert caught.value.where == "contour 3"
