@@ -255,16 +255,19 @@ def test_an_interrupt_ends_everything_on_the_cluster_and_says_nothing(
         parts = [Part(path.name, path, {{}}) for path in Path({str(tmp_path)!r}).glob("*.dxf")]
         try:
             with connection.connect({processes.address!r}) as found:
-                planner = partial(elsewhere.results, cluster=found, limits=Limits())
+                planner = partial(elsewhere.results, cluster=found, limits=Limits(time=120.0))
                 run(parts, Path({str(tmp_path)!r}), planner=planner)
         except KeyboardInterrupt:
             sys.exit(130)
     """)
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "cli")])}
     client = subprocess.Popen([sys.executable, "-W", "error", "-c", script], stderr=subprocess.PIPE, env=environment)
-    until(lambda: len(planning(dask)) == 2)
-    client.send_signal(signal.SIGINT)
-    _, words = client.communicate(timeout=60)
+    try:
+        until(lambda: len(planning(dask)) == 2)
+        client.send_signal(signal.SIGINT)
+        _, words = client.communicate(timeout=60)
+    finally:
+        client.kill()
     assert (client.returncode, words.decode()) == (130, "")
     assert scheduled(dask) == 0
     until(lambda: planning(dask) == [])

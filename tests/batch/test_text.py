@@ -13,8 +13,8 @@ from tests.batch.rows import HOSTILE, facts, failed, passed, without
 
 def test_a_batch_that_passed_takes_two_lines() -> None:
     rows = (passed("a.dxf", quantity=3, facts=facts(time=2000.0, cut_length=1.5)), passed("b.dxf"))
-    assert to_text(Batch(rows)) == "PASSED  2 of 2 parts passed\n  to cut  4 pieces in 1:40:02 h, 4.62 m cut\n"
-    assert to_text(Batch(rows[1:])) == "PASSED  1 of 1 part passed\n  to cut  1 piece in 0:00:02 h, 0.12 m cut\n"
+    assert to_text(Batch(rows)) == "PASSED  2 of 2 parts passed\n  to cut  4 pieces in 1:40:02 h, 4.62 m cut"
+    assert to_text(Batch(rows[1:])) == "PASSED  1 of 1 part passed\n  to cut  1 piece in 0:00:02 h, 0.12 m cut"
 
 
 def test_what_was_there_already_is_said() -> None:

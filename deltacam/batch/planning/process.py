@@ -229,7 +229,7 @@ def _crashed(running: _Running, task: Task) -> Outcome:
         with suppress(ValueError):
             what = f"its process was ended by {signal.Signals(-code).name}"
         if -code == getattr(signal, "SIGKILL", None):
-            hint = "the system may have run out of memory: plan fewer parts at a time with --jobs"
+            hint = "the system may have run out of memory: plan fewer parts at a time"
     words = running.last_words()
     if any(sign in words for sign in _OUT_OF_MEMORY):
         return ended(Status.MEMORY, task, TOO_LITTLE, MORE)

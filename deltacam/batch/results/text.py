@@ -15,7 +15,7 @@ _LONGEST_NOTE: Final = 400  # characters
 
 
 def to_text(batch: Batch) -> str:
-    """The batch as lines of text with a line feed at the end; nothing in it makes a terminal do anything."""
+    """The batch as lines of text; nothing in it makes a terminal do anything."""
     lines = [f"{'PASSED' if batch.passed else 'FAILED'}  {verdict(batch)}", *_figures(batch)]
     found = reasons(batch)
     if found:
@@ -26,7 +26,7 @@ def to_text(batch: Batch) -> str:
         lines += ["", *(f"note: {plain(note, longest=_LONGEST_NOTE)}" for note in batch.notes[:_MOST_NOTES])]
     if len(batch.notes) > _MOST_NOTES:
         lines.append(f"note: and {len(batch.notes) - _MOST_NOTES} more, in batch.json")
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines)
 
 
 def _figures(batch: Batch) -> list[str]:
