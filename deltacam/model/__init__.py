@@ -18,8 +18,22 @@ from deltacam.model.drawing import (
 )
 from deltacam.model.findings import Finding
 from deltacam.model.ledger import LedgerEntry, Outcome
-from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement
-from deltacam.model.process import Corner, Process
+from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement, Stretch
+from deltacam.model.process import (
+    Corner,
+    Gas,
+    Grade,
+    Heat,
+    Lead,
+    LeadShape,
+    Loops,
+    PowerLaw,
+    Process,
+    Provenance,
+    Slower,
+    StartRule,
+    Tabs,
+)
 from deltacam.model.report import UNCHECKED, Check, Held, Report, Size
 
 __all__ = [
@@ -39,18 +53,30 @@ __all__ = [
     "Cut",
     "Drawing",
     "Finding",
+    "Gas",
+    "Grade",
+    "Heat",
     "Held",
     "IntArray",
     "Layer",
+    "Lead",
+    "LeadShape",
     "LedgerEntry",
+    "Loops",
     "Mode",
     "Operation",
     "Outcome",
     "Placement",
+    "PowerLaw",
     "Process",
+    "Provenance",
     "Report",
     "Rule",
     "Selection",
     "Size",
+    "Slower",
+    "StartRule",
+    "Stretch",
+    "Tabs",
     "readonly",
 ]

@@ -19,6 +19,33 @@ class Placement:
     z: float
 
 
+class BlockKind(StrEnum):
+    """What a stretch of the program does."""
+
+    RAPID = "rapid"
+    PIERCE = "pierce"
+    LEAD_IN = "lead_in"
+    CUT = "cut"
+    LOOP = "loop"
+    TAB = "tab"
+    OVERCUT = "overcut"
+    LEAD_OUT = "lead_out"
+    ENGRAVE = "engrave"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stretch:
+    """A part of the way of the tool along a cut.
+
+    Attributes:
+        kind: what is done there. The laser is off in a tab and in a lead-out, and on in all others.
+        curve: open, sheet frame, m; it begins where the stretch before it ends.
+    """
+
+    kind: BlockKind
+    curve: Curve
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Cut:
     """One path of the beam's centre, cut or engraved.
@@ -30,6 +57,9 @@ class Cut:
         curve: in the sheet frame; it starts at ``curve.points[0]``, and ends there where it is closed, else at
             ``curve.points[-1]``.
         operation: cut or engrave.
+        way: of the tool, from the pierce to where the next move begins: lead-in, cut, loops, tabs, overcut, lead-out;
+            empty where it is the curve alone.
+        feed: m/s; None is that of the process.
     """
 
     contour: int
@@ -37,22 +67,13 @@ class Cut:
     handles: tuple[str, ...]
     curve: Curve
     operation: Operation = Operation.CUT
+    way: tuple[Stretch, ...] = ()
+    feed: float | None = None
 
     @property
     def where(self) -> str:
         """How messages name it: ``contour 3 (layer CUT, #2F)``."""
         return f"contour {self.contour} (layer {self.layer}, #{self.handles[0]})"
-
-
-class BlockKind(StrEnum):
-    """What a stretch of the program does."""
-
-    RAPID = "rapid"
-    PIERCE = "pierce"
-    LEAD_IN = "lead_in"
-    CUT = "cut"
-    LEAD_OUT = "lead_out"
-    ENGRAVE = "engrave"
 
 
 class Mode(StrEnum):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, fields
-from typing import Any, Final, NamedTuple, cast, get_args
+from dataclasses import fields
+from typing import Any, Final, NamedTuple
 
 from deltacam.errors import ProgramError, RobotError
-from deltacam.model import Block, BlockKind, Corner, Mode, Operation, Placement, Process, Rule
+from deltacam.model import Block, BlockKind, Mode, Placement, Process
 from deltacam.program.fields import MAX_WHOLE, Fields
+from deltacam.program.process import from_meta as process_from_meta
+from deltacam.program.process import to_meta as process_to_meta
 from deltacam.program.program import DrawingRef, Program
 from deltacam.robot.meta import from_meta as robot_from_meta
 from deltacam.robot.meta import to_meta as robot_to_meta
@@ -16,8 +18,6 @@ from deltacam.robot.robot import Robot
 
 KEYS: Final = ("blocks", "drawing", "mode", "placement", "process", "rate_hz", "robot", "rows", "sha256")
 _BLOCK_KEYS: Final = tuple(field.name for field in fields(Block))
-_PROCESS_KEYS: Final = tuple(field.name for field in fields(Process))
-_RULE_KEYS: Final = tuple(field.name for field in fields(Rule))
 _DRAWING_KEYS: Final = ("accept_loss", "file", "ignored_layers", "joining_m", "layers", "metres_per_unit", "sha256")
 _PLACEMENT_KEYS: Final = ("rotation_rad", "x_m", "y_m", "z_m")
 _LARGEST: Final = 1e4  # m, s or m/s: far beyond any machine, and far from where a product could overflow
@@ -50,7 +50,7 @@ def to_meta(program: Program, *, sha256: str) -> dict[str, Any]:
             "y_m": placement.y,
             "z_m": placement.z,
         },
-        "process": asdict(program.process),
+        "process": process_to_meta(program.process),
         "rate_hz": program.rate_hz,
         "robot": robot_to_meta(program.robot),
         "rows": len(program.q),
@@ -72,7 +72,7 @@ def from_meta(values: object, where: str) -> Meta:
     return Meta(
         robot=_robot(top),
         placement=_placement(top.section("placement", _PLACEMENT_KEYS)),
-        process=_process(top.section("process", _PROCESS_KEYS)),
+        process=process_from_meta(top),
         drawing=_drawing(top.section("drawing", _DRAWING_KEYS)),
         mode=top.choice("mode", Mode),
         blocks=_blocks(top),
@@ -124,46 +124,6 @@ def _placement(found: Fields) -> Placement:
         rotation=found.number("rotation_rad", -_LARGEST, _LARGEST),
         z=found.number("z_m", -_LARGEST, _LARGEST),
     )
-
-
-def _process(found: Fields) -> Process:
-    corner = found.text("corner")
-    if corner not in get_args(Corner):
-        raise found.problem(f"unknown corner {corner[:40]!r}", hint=f"use {' or '.join(get_args(Corner))}")
-    return Process(
-        name=found.text("name"),
-        source=found.text("source", empty=True),
-        material=found.text("material", empty=True),
-        thickness=found.number("thickness", 0.0, _LARGEST),
-        kerf=found.number("kerf", 0.0, 1.0),
-        feed=found.number("feed", 1e-9, _LARGEST),
-        power=found.number("power", 0.0, 1.0),
-        pierce_time=found.number("pierce_time", 0.0, _LARGEST),
-        tolerance=found.number("tolerance", 1e-9, 1.0),
-        chord_tolerance=found.number("chord_tolerance", 1e-9, 1.0),
-        corner=cast("Corner", corner),
-        gas=found.text("gas", empty=True),
-        rules=_rules(found),
-        open=found.choice("open", Operation),
-        engrave_feed=None if found.raw("engrave_feed") is None else found.number("engrave_feed", 1e-9, _LARGEST),
-        engrave_power=None if found.raw("engrave_power") is None else found.number("engrave_power", 0.0, 1.0),
-    )
-
-
-def _rules(process: Fields) -> tuple[Rule, ...]:
-    found = []
-    for index, values in enumerate(process.items("rules")):
-        rule = Fields(values, f"{process.where}, rule {index}", _RULE_KEYS)
-        found.append(
-            Rule(
-                operation=rule.choice("operation", Operation),
-                layer=None if rule.raw("layer") is None else rule.text("layer"),
-                color=None if rule.raw("color") is None else rule.whole("color", 1, 255),
-                linetype=None if rule.raw("linetype") is None else rule.text("linetype"),
-                open=rule.choice("open", Operation),
-            )
-        )
-    return tuple(found)
 
 
 def _drawing(found: Fields) -> DrawingRef:
