@@ -35,6 +35,7 @@ _APART: Final = 2.0  # gaps: between the middles of neighbouring tabs, at least
 _STEPS: Final = 4  # places per gap
 _MOST_PLACES: Final = 20_000
 _MORE: Final = 10  # tabs than a spacing asks for at least, that are tried where corners push them apart
+_ROUNDS: Final = 10  # of the search for the ends of a gap
 _FLATTENING: Final = 1e-6  # m
 _SLACK: Final = 3e-6  # m; above the errors of flattening
 _DARK: Final = frozenset({BlockKind.CUT, BlockKind.TAB, BlockKind.LEAD_OUT})
@@ -226,7 +227,8 @@ def _has_hold(path: _Path, places: Array, gap: float, surroundings: _Surrounding
         for lines in (tree, surroundings.others):
             near = lines.query(landing, predicate="dwithin", distance=reach - _SLACK)
             good[near[0]] = False
-        good &= ~shapely.dwithin(shapely.points(points), burning, surroundings.kerf)
+        if surroundings.burning:
+            good &= ~shapely.dwithin(shapely.points(points), burning, surroundings.kerf)
     return good
 
 
@@ -237,15 +239,12 @@ def _line(curve: Curve) -> shapely.LineString:
 def _gaps(path: _Path, middles: Array, gap: float) -> Array:
     """The begin and the end of every gap along the path, (K, 2) m, ``gap`` m apart as the crow flies.
 
-    On a bend the gap is longer along the path; half of it is found by halving.
+    On a bend the gap is longer along the path, by little: each round of the search leaves a few percent of the error.
     """
-    low, high = np.full(len(middles), 0.5 * gap), np.full(len(middles), 0.55 * gap)
-    for _ in range(50):
-        half = 0.5 * (low + high)
-        begin, end = path.at(middles - half)[0], path.at(middles + half)[0]
-        short = np.hypot(*(end - begin).T) < gap
-        low, high = np.where(short, half, low), np.where(short, high, half)
-    return np.stack([middles - high, middles + high], axis=1)
+    half = np.full(len(middles), 0.5 * gap)
+    for _ in range(_ROUNDS):
+        half *= gap / np.hypot(*(path.at(middles + half)[0] - path.at(middles - half)[0]).T)
+    return np.stack([middles - half, middles + half], axis=1)
 
 
 def _with_gaps(way: Sequence[Stretch], path: _Path, gaps: Array) -> tuple[Stretch, ...]:
