@@ -49,7 +49,14 @@ class Tabbed(NamedTuple):
 
 
 def with_tabs(
-    way: Sequence[Stretch], contour: Contour, *, side: Side, kerf: float, rule: Tabs, others: shapely.STRtree
+    way: Sequence[Stretch],
+    contour: Contour,
+    *,
+    side: Side,
+    kerf: float,
+    rule: Tabs,
+    others: shapely.STRtree,
+    clear: Sequence[Curve] = (),
 ) -> Tabbed:
     """The way of a cut with tabs in it: what was CUT becomes CUT, TAB, CUT.
 
@@ -60,6 +67,7 @@ def with_tabs(
         kerf: width of the cut, m, >= 0.
         rule: how wide, and how many or how far apart.
         others: the ways of all other cuts as lines, m.
+        clear: what no tab may be within a kerf of: edges that are shared with another part.
 
     Returns:
         the way, and findings where there are fewer tabs than asked for or they are further apart.
@@ -69,7 +77,7 @@ def with_tabs(
     path = _Path.of([stretch.curve for stretch in way if stretch.kind is BlockKind.CUT])
     gap = rule.width + kerf
     burning = [stretch.curve for stretch in way if stretch.kind not in _DARK]
-    surroundings = _Surroundings(side, kerf, rule.width, others, burning)
+    surroundings = _Surroundings(side, kerf, rule.width, others, burning, clear)
     chosen, wanted = _chosen(path, gap, rule, surroundings)
     return Tabbed(_with_gaps(way, path, _gaps(path, chosen, gap)), _findings(contour, path, rule, chosen, wanted))
 
@@ -126,6 +134,7 @@ class _Surroundings(NamedTuple):
     width: float
     others: shapely.STRtree
     burning: Sequence[Curve]
+    clear: Sequence[Curve]
 
 
 def _chosen(path: _Path, gap: float, rule: Tabs, surroundings: _Surroundings) -> tuple[Array, int]:
@@ -216,7 +225,7 @@ def _has_hold(path: _Path, places: Array, gap: float, surroundings: _Surrounding
     """At which places there is material beyond the kerf, and nothing else burns the bridge away, (N,)."""
     reach = 0.5 * (surroundings.kerf + surroundings.width)
     own = [_line(curve) for curve in (*path.curves, *surroundings.burning)]
-    burning = shapely.union_all([_line(curve) for curve in surroundings.burning])
+    kept_from = [_line(curve) for curve in (*surroundings.burning, *surroundings.clear)]
     tree = shapely.STRtree(own)
     away = 1.0 if surroundings.side == "left" else -1.0
     good = np.ones(len(places), dtype=np.bool_)
@@ -227,8 +236,8 @@ def _has_hold(path: _Path, places: Array, gap: float, surroundings: _Surrounding
         for lines in (tree, surroundings.others):
             near = lines.query(landing, predicate="dwithin", distance=reach - _SLACK)
             good[near[0]] = False
-        if surroundings.burning:
-            good &= ~shapely.dwithin(shapely.points(points), burning, surroundings.kerf)
+        for line in kept_from:
+            good &= ~shapely.dwithin(line, shapely.points(points), surroundings.kerf)
     return good
 
 

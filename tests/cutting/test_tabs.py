@@ -224,6 +224,16 @@ def test_an_overcut_and_a_lead_burn_no_bridge_away() -> None:
     assert (found.way[0], found.way[-1]) == (way[0], way[-1])
 
 
+def test_no_tab_is_on_an_edge_that_is_to_be_kept_clear() -> None:
+    part = contour(rectangle(0.03, 0.03))
+    (cut,) = offset([part], kerf=KERF).cuts
+    way = (Stretch(BlockKind.CUT, begun(cut.curve)),)
+    edge = Curve(points=np.array([[0.0301, 0.0], [0.0301, 0.02]]), bulges=np.zeros(1), closed=False)
+    found = with_tabs(way, part, side="right", kerf=KERF, rule=FOUR, others=tree(), clear=[edge])
+    assert len(tabs(found)) == 4
+    assert all(x < 0.03 or y > 0.02 + KERF for x, y in middles(found))
+
+
 def test_tabs_keep_clear_of_loops() -> None:
     part = contour(rectangle(0.03, 0.03))
     (cut,) = offset([part], kerf=KERF).cuts
