@@ -60,18 +60,18 @@ def share_edges(
 
     Args:
         cuts: as the kerf leaves them, m.
-        contours: that they are of; only outlines in the same hole, or on the bare sheet, share edges.
+        contours: that they are of; only outlines share edges.
         kerf: width of the cut, m, >= 0.
         tolerance: how far the two paths may be apart, m, > 0: so much is the edge of the later part off.
         shortest: the least length of a common edge, m, > 0.
     """
-    outlines = {one.number: one.parent for one in contours if one.has_kerf and not one.is_hole}
+    outlines = {one.number: one.curve.points for one in contours if one.has_kerf and not one.is_hole}
     closed = [index for index, cut in enumerate(cuts) if cut.curve.closed and cut.contour in outlines]
     if len(closed) < 2:
         return Shared(tuple(cuts), {}, {}, ())
-    overlaps = _overlaps([cuts[index] for index in closed], outlines, tolerance)
     mine = [cuts[index] for index in closed]
-    kept, lost, left = _spans(overlaps, mine, kerf, shortest)
+    corners = [outlines[cut.contour] for cut in mine]
+    kept, lost, left = _spans(_overlaps(mine, tolerance), mine, corners, kerf, shortest)
     replaced = {closed[local]: left[local] for local in lost}
     after, edges = _relations(kept, lost, mine)
     found = tuple(one for index, cut in enumerate(cuts) for one in replaced.get(index, (cut,)))
@@ -102,15 +102,14 @@ class _Span(NamedTuple):
     others: frozenset[int]
 
 
-def _overlaps(cuts: Sequence[Cut], parents: Mapping[int, int | None], tolerance: float) -> _Overlaps:
+def _overlaps(cuts: Sequence[Cut], tolerance: float) -> _Overlaps:
     """Where the paths of cuts run along each other: pairs of segments, each a stretch of the first one."""
     first = np.cumsum([0, *(len(cut.curve.bulges) for cut in cuts)])
     owner = np.repeat(np.arange(len(cuts)), np.diff(first))
     lines = np.concatenate([_segments(cut.curve) for cut in cuts])
     one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=tolerance + 2.0 * _FLATTENING)
     number = np.array([cut.contour for cut in cuts])
-    parent = np.array([-1 if parents[cut.contour] is None else parents[cut.contour] for cut in cuts], dtype=np.int64)
-    mates = (number[owner[one]] != number[owner[other]]) & (parent[owner[one]] == parent[owner[other]])
+    mates = number[owner[one]] != number[owner[other]]
     one, other = one[mates], other[mates]
     points = np.concatenate([cut.curve.starts for cut in cuts])
     ends = np.concatenate([cut.curve.ends for cut in cuts])
@@ -153,7 +152,7 @@ def _along(every: Curve, one: IntArray, other: IntArray, tolerance: float) -> tu
 
 
 def _spans(
-    overlaps: _Overlaps, cuts: Sequence[Cut], kerf: float, shortest: float
+    overlaps: _Overlaps, cuts: Sequence[Cut], corners: Sequence[Array], kerf: float, shortest: float
 ) -> tuple[dict[int, list[_Span]], dict[int, list[_Span]], dict[int, tuple[Cut, ...]]]:
     """What each cut shares with later ones, which it keeps, what with earlier ones, which it loses, and what is left.
 
@@ -167,7 +166,7 @@ def _spans(
         earlier = place[overlaps.other] < place[overlaps.cut]
         spans = {cut: _merged(overlaps, earlier, cut, lengths[cut], shortest) for cut in rank if cut not in never}
         lost = {cut: found for cut, found in spans.items() if found}
-        left = {cut: _remaining(cuts[cut], found, kerf) for cut, found in lost.items()}
+        left = {cut: _remaining(cuts[cut], found, corners[cut], kerf) for cut, found in lost.items()}
         whole = [cut for cut in lost if not left[cut]]
         if not whole:
             break
@@ -205,21 +204,22 @@ def _merged(overlaps: _Overlaps, which: BoolArray, cut: int, length: float, shor
     return [span for span in spans if span.end - span.begin >= shortest]
 
 
-def _remaining(cut: Cut, lost: Sequence[_Span], kerf: float) -> tuple[Cut, ...]:
+def _remaining(cut: Cut, lost: Sequence[_Span], corners: Array, kerf: float) -> tuple[Cut, ...]:
     """The open cuts that are left of a closed one, without rounds between two stretches that are shared."""
     length = curves.length(cut.curve)
     twice = curves.chain([curves.opened(cut.curve)] * 2)
     ends = [*(span.begin for span in lost[1:]), lost[0].begin + length]
     gaps = [(span.end, end) for span, end in zip(lost, ends, strict=True) if end - span.end > _SAME]
     parts = (curves.part(twice, begin, end) for begin, end in gaps)
-    return tuple(replace(cut, curve=part) for part in parts if not _is_round(part, kerf))
+    return tuple(replace(cut, curve=part) for part in parts if not _is_round(part, corners, kerf))
 
 
-def _is_round(part: Curve, kerf: float) -> bool:
-    """Whether a part of a path is but the round about a drawn corner."""
-    bent = bool(np.all(np.abs(0.5 * kerf * curves.curvatures(part) - 1.0) < 0.01))
-    bent |= bool(np.all(np.abs(0.5 * kerf * curves.curvatures(part) + 1.0) < 0.01))
-    return bent and curves.length(part) <= 0.5 * np.pi * kerf
+def _is_round(part: Curve, corners: Array, kerf: float) -> bool:
+    """Whether a part of a path is but the round about one of the drawn corners, (K, 2) m."""
+    middle, _ = curves.evaluate(part, np.arange(len(part.bulges)), 0.5 * curves.lengths(part))
+    points = np.concatenate([part.points, middle])
+    away = np.hypot(*(points[:, None] - corners[None, :]).transpose(2, 0, 1))
+    return bool(np.any(np.all(np.abs(away - 0.5 * kerf) <= _SAME, axis=0)))
 
 
 def _relations(

@@ -146,6 +146,18 @@ def test_a_long_edge_beside_short_ones_is_cut_in_one_go() -> None:
     assert all_free(contours, found.cuts)
 
 
+def test_a_fillet_of_one_kerf_around_the_corner_of_another_part_is_shared_with_its_sides() -> None:
+    notched = Curve(
+        points=np.array([[0, 0], [20, 0], [20, 20], [10, 20], [10, 10.2], [9.8, 10], [0, 10]]) * 1e-3,
+        bulges=np.array([0, 0, 0, 0, -math.tan(math.pi / 8), 0, 0]),
+    )
+    inside = contour(rectangle(0.0098, 0.0098, at=(0.0, 0.0102)), number=1)
+    contours = [inside, contour(notched, number=2)]
+    cuts, found = shared(contours)
+    assert all_free(contours, found.cuts)
+    assert length(found.cuts) < length(cuts) - 0.0195
+
+
 def test_shared_arcs_are_cut_once_too() -> None:
     inner = Curve(points=np.array([[0, 0], [0.01, 0], [0.01, 0.01], [0, 0.01]]), bulges=np.array([0, 0.4, 0, 0.0]))
     (path,) = offset([contour(inner)], kerf=2 * KERF).cuts
