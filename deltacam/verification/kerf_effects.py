@@ -20,7 +20,6 @@ from deltacam.model import Array, Contour, KerfEffect
 _CORNER: Final = np.radians(10.0)  # that a corner turns by at least, to be one
 _SHARPEST: Final = np.radians(179.0)
 _DEPTH: Final = 1e-6  # m; less than that is nothing
-_COARSER: Final = 1e-6  # m; how far a line may be off so that it needs fewer points
 _SLACK: Final = 3e-6  # m; above the errors of reading and flattening
 
 
@@ -79,7 +78,7 @@ def _met(numbers: Sequence[int], rings: Sequence[Sequence[Array]], kerf: float) 
     owner = np.repeat(np.array(numbers, dtype=np.int64), [len(found) for found in rings])
     met: dict[int, set[int]] = {number: set() for number in numbers}
     if kerf > _SLACK and paths:
-        lines = shapely.simplify(np.array(paths, dtype=object), _COARSER)
+        lines = np.array(paths, dtype=object)
         one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=kerf - _SLACK)
         for first, second in zip(owner[one].tolist(), owner[other].tolist(), strict=True):
             if first != second:
