@@ -36,6 +36,13 @@ def stated_feed(process: Process) -> float:
     return process.feed / _factor(process, process.gas)
 
 
+def stated_feeds(process: Process) -> tuple[float, float]:
+    """The slowest and the fastest feed as `stated_feed`; the feed itself where the process has no range."""
+    low, high = process.feeds or (process.feed, process.feed)
+    factor = _factor(process, process.gas)
+    return low / factor, high / factor
+
+
 def _factor(process: Process, name: str) -> float:
     return next((gas.feed_factor for gas in process.gases if gas.name == name), 1.0)
 
