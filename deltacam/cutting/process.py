@@ -78,6 +78,7 @@ def _numbers(process: Process) -> Iterator[tuple[str, str, float, str]]:
     """The numbers that the command line may change: in words, as `BOUNDS` names them, in SI, and where each is from."""
     yield "kerf", "kerf_mm", process.kerf, "--kerf, or kerf_mm"
     yield "feed", "feed_m_min", process.feed, "--feed, or feed_m_min"
+    yield "power", "power", process.power, "--power, or power"
     yield "tolerance", "tolerance_um", process.tolerance, "--tolerance, or tolerance_um"
     yield "chord tolerance", "chord_tolerance_um", process.chord_tolerance, "chord_tolerance_um"
     if process.engrave_feed is not None:
