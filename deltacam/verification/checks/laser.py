@@ -8,7 +8,8 @@ import numpy as np
 
 from deltacam.model import BlockKind, Check, IntArray, Mode, Operation
 from deltacam.verification.checks.measure import MICROMETRE, at_most, none_of
-from deltacam.verification.evidence import KINDS, LASER_KINDS, MOVING_KINDS, Evidence, Run
+from deltacam.verification.evidence import KINDS, LASER_KINDS, MOVING_KINDS, Evidence
+from deltacam.verification.runs import Run
 
 REST: Final = 0.02
 """How long the laser may stay on at rest beyond the pierce, s."""
