@@ -14,6 +14,7 @@ from deltacam.geometry import curve as curves
 from deltacam.model import Array, Block, BlockKind, Cut, Held, IntArray, Mode, Operation, Placement, Process
 from deltacam.motion.corners import Pace
 from deltacam.motion.path import Path, straight
+from deltacam.motion.power import powers
 from deltacam.motion.route import Limits
 from deltacam.motion.run import Run, held_along
 from deltacam.motion.schedule import Drawn, Move, schedule
@@ -81,7 +82,11 @@ def plan_motion(
         RobotError: a move leaves the reach.
     """
     tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error, mode=mode)
-    return tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
+    found = tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
+    if mode is not Mode.CUT:
+        return found
+    kinds = [block.kind for block in found.blocks]
+    return replace(found, power=powers(found.q, found.block, kinds, robot=robot, process=process))
 
 
 def moves_of(
@@ -110,9 +115,10 @@ def _taped(
         power = way.power if mode is Mode.CUT else 0.0
         tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
         tape.rest(BlockKind.RAPID, ticks=0 if way.pierce else apart)
-        pace = _pace(robot, way.limits, (*curve.points[0], placement.z))
+        limits = way.limits if cut.feed is None else working_limits(robot, process, cut.feed)
+        pace = _pace(robot, limits, (*curve.points[0], placement.z))
         drawn = Drawn(curve, process.corner, deviation, pace, placement.z)
-        tape.run(drawn, curve.ends[-1], way.limits, way.kind, power=power, cut=cut, where=cut.where)
+        tape.run(drawn, curve.ends[-1], limits, way.kind, power=power, cut=cut, where=cut.where)
         tape.rest(BlockKind.RAPID, ticks=apart)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
