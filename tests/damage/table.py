@@ -83,6 +83,9 @@ OF_LASER: dict[str, Kind] = {
     ),
     "laser off in a pierce": Kind(in_laser.off_in(BlockKind.PIERCE), ("laser on in all cuts",), "no tick", 1, 1000),
     "laser weaker for a tick": Kind(in_laser.weaker, ("laser on in all cuts",), "nothing", 1e-9, 0.5),
+    "a power beside its law": Kind(
+        in_laser.beside_the_law, ("laser on in all cuts",), "a thousandth of the rated power", 1.1, 50.0, 0.9
+    ),
     "a power of more than 1": Kind(in_laser.too_strong, ("laser power from 0 to 1",), "nothing", 1e-9, 1.0),
     "a power of less than 0": Kind(in_laser.negative, ("laser power from 0 to 1",), "nothing", 1e-9, 1.0),
     "another power in the meta": Kind(in_laser.other_power_in_meta, ("laser on in all cuts",), "nothing", 1e-9, 0.5),
