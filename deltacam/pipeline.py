@@ -30,6 +30,7 @@ from deltacam.model import (
     Selection,
 )
 from deltacam.motion import setpoints
+from deltacam.motion.tape import Setpoints
 from deltacam.placing.find import By, Found, Task, find
 from deltacam.placing.sampled import Sampled
 from deltacam.program import csv
@@ -297,7 +298,7 @@ def _ordered(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) 
     return order.order(cuts, parents=parents, start=_to_sheet(how.robot.workspace.park, where))
 
 
-def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> setpoints.Setpoints:
+def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Setpoints:
     how.progress("order", 0, 1)
     ordered = _ordered(part, cuts, how, where)
     return setpoints.plan_motion(
@@ -313,7 +314,7 @@ def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) 
     )
 
 
-def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> setpoints.Setpoints:
+def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Setpoints:
     (left, bottom), (right, top) = placement.bounding_box(cuts)
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
     placement.refuse_frame_outside(corners, robot=how.robot, placement=where)

@@ -93,7 +93,7 @@ def _straight(start: Array, end: Array, z: float) -> Path:
 
 def _moved(path: Path, by: Placement) -> Path:
     start = path.start @ _turn(by.rotation).T + (by.x, by.y)
-    return Path(start, path.heading + by.rotation, path.curvature, path.sharpness, path.length, path.z)
+    return Path(start, path.heading + by.rotation, path.curvature, path.sharpness, path.length, path.stretch, path.z)
 
 
 def _end(path: Path) -> Array:
