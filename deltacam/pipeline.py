@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from deltacam.cutting import kerf, order, placement
+from deltacam.cutting import feeds, kerf, order, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
 from deltacam.drawing.reader import read_drawing
 from deltacam.model import (
@@ -231,6 +231,7 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
     where = placement.place(part.contours, robot=robot, at=how.at, rotation=how.rotation)
     how.progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
+    shifted = replace(shifted, cuts=feeds.in_holes(shifted.cuts, part.contours, process=process))
     placement.refuse_outside(
         shifted.cuts,
         contours=part.contours,
@@ -260,7 +261,7 @@ def _placed(part: Drawing, how: _How, by: By) -> Found:
     if any(contour.operation is Operation.ENGRAVE for contour in part.contours):
         setpoints.engraving(process)
     how.progress("kerf", 0, 1)
-    cuts = kerf.offset(part.contours, kerf=process.kerf).cuts
+    cuts = feeds.in_holes(kerf.offset(part.contours, kerf=process.kerf).cuts, part.contours, process=process)
     footprint = placement.footprint(cuts, part.contours)
     placement.refuse_everywhere(footprint, robot=robot)
     quiet = how._replace(what_if=False, mode=Mode.CUT, progress=_silent)
@@ -295,7 +296,8 @@ def _where(found: Found) -> Finding:
 
 def _ordered(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Cut, ...]:
     parents = {contour.number: contour.parent for contour in part.contours}
-    return order.order(cuts, parents=parents, start=_to_sheet(how.robot.workspace.park, where))
+    ordered = order.order(cuts, parents=parents, start=_to_sheet(how.robot.workspace.park, where))
+    return feeds.in_bends(ordered, part.contours, process=how.process)
 
 
 def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Setpoints:

@@ -99,7 +99,7 @@ def _taped(
                 tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
                 tape.rest(BlockKind.RAPID, ticks=0 if way.pierce else apart)
             pace = _pace(robot, limits, (*curve.points[0], placement.z))
-            drawn = Drawn(curve, part.stretch, process.corner, deviation, pace, placement.z)
+            drawn = Drawn(curve, part.stretch, part.speed, process.corner, deviation, pace, placement.z)
             tape.work(drawn, limits, power=power, cut=cut)
             tape.rest(BlockKind.RAPID, ticks=apart)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
