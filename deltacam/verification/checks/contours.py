@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 
 from deltacam.model import Check, Drawing, Operation
 from deltacam.program.program import Program
 from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison
+from deltacam.verification.evidence import Evidence
+from deltacam.verification.runs import Run
 
 
 def same_drawing(program: Program, drawing: Drawing) -> Check:
@@ -46,13 +49,18 @@ def cut_once(comparison: Comparison) -> Check:
 
 
 def closed(comparison: Comparison) -> Check:
-    """The cut of a closed contour ends where it started."""
+    """The cut of a closed contour, with its overcut, comes back to where it started."""
     evidence = comparison.evidence
     runs = [run for target in comparison.targets if target.contour.curve.closed for run in target.runs]
-    first, end = (np.array(ticks, dtype=np.int64) for ticks in ([run.first for run in runs], [run.end for run in runs]))
-    gap = np.hypot(*(evidence.sheet[end] - evidence.sheet[first]).T)
-    limit = evidence.program.process.tolerance
-    return at_most(evidence, "gap at the end of a cut", gap * 1e6, limit * 1e6, "um", ticks=end)
+    gaps = [_gap(evidence, run) for run in runs]
+    limit, ticks = evidence.program.process.tolerance, np.array([run.end for run in runs], dtype=np.int64)
+    return at_most(evidence, "gap at the end of a cut", np.array(gaps) * 1e6, limit * 1e6, "um", ticks=ticks)
+
+
+def _gap(evidence: Evidence, run: Run) -> float:
+    """How far the second half of a run stays from where the run starts, m."""
+    start, way = evidence.sheet[run.first], evidence.sheet[(run.first + run.end) // 2 : run.end + 1]
+    return float(shapely.distance(shapely.Point(start), shapely.LineString(np.concatenate([way, way[-1:]]))))
 
 
 def holes_first(comparison: Comparison) -> Check:

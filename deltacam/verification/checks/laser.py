@@ -9,7 +9,8 @@ import numpy as np
 from deltacam.model import Array, BlockKind, Check, IntArray, Mode, Operation
 from deltacam.verification import energy
 from deltacam.verification.checks.measure import MICROMETRE, at_most, none_of
-from deltacam.verification.evidence import KINDS, LASER_KINDS, Evidence, Run, length
+from deltacam.verification.evidence import KINDS, LASER_KINDS, Evidence, length
+from deltacam.verification.runs import Run
 
 REST: Final = 0.02
 """How long the laser may stay on at rest beyond the pierce, s."""
