@@ -1,7 +1,7 @@
 """Feeds that are reduced by rule: in small holes, whose heat does not spread, and in small bends.
 
 A hole is as large as the circle of its area. The radius of a bend is that of the drawn line, not of the kerf path.
-A bend that is drawn as short lines has the radius of the circle that its lines are chords of.
+A bend that is drawn as short lines, or short arcs, has the radius of the circle that these are chords of.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from deltacam.geometry import curve as curves
 from deltacam.model import Array, BlockKind, Contour, Curve, Cut, IntArray, Operation, Process, Stretch
 
 SHARPEST_CHORDS: Final = np.radians(20.0)
-"""Lines that meet at a larger angle, rad, are a corner and no bend."""
+"""Chords of a bend meet at no larger angle, rad: beyond it is a corner."""
 
 SLACK: Final = 1e-6
 """How much larger than a rule says a hole or a radius may be, m: drawings round their numbers."""
@@ -98,16 +98,19 @@ def _with_slow_bends(cut: Cut, drawn: Curve, rules: Array, feed: float) -> Cut:
 def radii(curve: Curve) -> Array:
     """The radius of every segment of a drawn line, (M,) m; infinite where it is straight.
 
-    A line is a chord of a bend where the next one goes on at less than `SHARPEST_CHORDS`: its radius is the mean length
-    of both over that angle. Of the two at its ends the smaller one counts.
+    Segments that turn little are chords of a bend too, where the next one goes on at less than `SHARPEST_CHORDS`: the
+    radius is the mean length of both over that angle. Of its own and those at its ends the smallest one counts.
     """
-    bend, length = np.abs(curves.curvatures(curve)), curves.lengths(curve)
+    bend, chord = np.abs(curves.curvatures(curve)), curves.chords(curve)
     found = np.divide(1.0, bend, out=np.full_like(bend, np.inf), where=bend > 0.0)
-    angle = np.abs(curves.corner_angles(curve))
-    behind = np.arange(len(angle)) + (0 if curve.closed else 1)
+    behind = np.arange(0 if curve.closed else 1, len(bend))
     before = behind - 1  # of a closed curve the last one comes before the first
-    chords = (angle > _STRAIGHT) & (angle <= SHARPEST_CHORDS) & (bend[before] == 0.0) & (bend[behind] == 0.0)
-    radius = np.where(chords, 0.5 * (length[before] + length[behind]) / np.where(chords, angle, 1.0), np.inf)
+    one, other = chord[before], chord[behind]
+    angle = np.abs(np.arctan2(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0], np.sum(one * other, axis=1)))
+    short = np.abs(curves.turns(curve)) <= SHARPEST_CHORDS
+    bent = (angle > _STRAIGHT) & (angle <= SHARPEST_CHORDS) & short[before] & short[behind]
+    length = 0.5 * (np.hypot(*one.T) + np.hypot(*other.T))
+    radius = np.divide(length, angle, out=np.full_like(length, np.inf), where=bent)
     for side in (before, behind):
         np.minimum.at(found, side, radius)
     return found

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
 
 from deltacam.model import Array, Operation, Process
-from deltacam.verification.evidence import Evidence
+from deltacam.verification.evidence import ON_PATH_KINDS, Evidence
 
 WINDOW: Final = 1e-3
 """Length of cut over which energy is added up, m."""
@@ -26,21 +27,21 @@ def usual_energy(process: Process, operation: Operation) -> float:
 def line_energy(evidence: Evidence) -> Array:
     """The energy of the millimetre about every tick of a cut, as a multiple of the usual one, (N,).
 
-    About the ends of a run it is the first and the last millimetre of it, so that nothing of another run counts; a rest
-    is of all millimetres that hold it.
+    About the ends of a stretch on the path of a contour it is the first and the last millimetre of it: leads, loops and
+    pierces burn the waste. A rest is of all millimetres that hold it.
 
     Returns:
-        nan in rows that are of no run, of one that is shorter than a millimetre, or where nothing is usual.
+        nan in rows that are of no such stretch, of one that is shorter than a millimetre, or where nothing is usual.
     """
     process, found = evidence.program.process, np.full(len(evidence.program.q), np.nan)
     step = evidence.speed / evidence.rate
-    for run in evidence.runs:
-        rows = slice(run.first, run.end)
+    for first, end, operation in _stretches(evidence):
+        rows = slice(first, end)
         way, energy = (
             np.concatenate([[0.0], np.cumsum(one)])
             for one in (step[rows], evidence.program.power[rows] / evidence.rate)
         )
-        usual = usual_energy(process, run.operation)
+        usual = usual_energy(process, operation)
         if way[-1] < WINDOW or usual == 0.0:
             continue
         start = way[:-1] - 0.5 * WINDOW
@@ -50,3 +51,10 @@ def line_energy(evidence: Evidence) -> Array:
         behind = np.where(last, energy[-1], np.interp(np.maximum(start, 0.0) + WINDOW, way, energy))
         found[rows] = (behind - before) / (WINDOW * usual)
     return found
+
+
+def _stretches(evidence: Evidence) -> Iterator[tuple[int, int, Operation]]:
+    """Where the tool is on the path of a contour with the laser on: the first row, and the one after the last."""
+    for run in evidence.runs:
+        for first, end in evidence.stretches(run, ON_PATH_KINDS):
+            yield first, end, run.operation

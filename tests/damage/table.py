@@ -55,6 +55,10 @@ OF_MOTION: dict[str, Kind] = {
     ),
     "played faster: feed": Kind(in_motion.faster_feed, ("feed while cutting",), LIMIT, 1.01, 3.0, 0.99),
     "a slower feed in the meta": Kind(in_motion.slower_feed_in_meta, ("feed while cutting",), LIMIT, 1.01, 3.0, 0.99),
+    "a slower feed in holes in the meta": Kind(
+        in_motion.slower_holes_in_meta, ("reduced feed",), LIMIT, 1.01, 3.0, 0.99
+    ),
+    "a slower feed in bends in the meta": Kind(in_motion.slower_bends_in_meta, ("reduced feed",), LIMIT, 1.01, 3.0),
     "a cut resampled faster": Kind(in_motion.faster_cut, ("feed while cutting",), LIMIT, 1.01, 3.0),
     "a jolt: joint speed": Kind(in_motion.jolt(of_joints(1)), ("joint speed",), LIMIT, 1.01, 10.0, 0.99),
     "a jolt: joint acceleration": Kind(in_motion.jolt(of_joints(2)), ("joint acceleration",), LIMIT, 1.01, 10.0, 0.99),
