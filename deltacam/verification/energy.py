@@ -24,6 +24,11 @@ def usual_energy(process: Process, operation: Operation) -> float:
     return process.power / process.feed
 
 
+def to_j_mm(process: Process) -> float:
+    """What a millimetre of a cut gets at the feed, J; 0 where nobody says what the laser has."""
+    return 1e-3 * process.laser_power * usual_energy(process, Operation.CUT)
+
+
 def line_energy(evidence: Evidence) -> Array:
     """The energy of the millimetre about every tick of a cut, as a multiple of the usual one, (N,).
 
