@@ -98,7 +98,7 @@ def clothoid_rectangle() -> Path:
             ends = clothoid.advance(place[None], heading * one, curvature * one, sharpness * one, way * one)
             place, heading = ends[0][0], float(ends[1][0])
     table = np.array(rows)
-    columns = (table[:, :2], *table[:, 2:6].T, np.zeros(len(table)))
+    columns = (table[:, :2], *table[:, 2:6].T, np.zeros(len(table)), np.full(len(table), np.inf))
     return Path(*columns, LARGE.workspace.sheet_z)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from deltacam.cutting import feeds
 from deltacam.cutting.leads.approaches import Approach, approaches, begun
 from deltacam.cutting.leads.reach import Reach
 from deltacam.cutting.leads.waste import Waste
@@ -37,6 +38,7 @@ def ways(
         placement: of the sheet frame.
     """
     reach = Reach(robot, placement)
+    cuts = feeds.in_holes(cuts, contours, process=process)
     parents = {contour.number: contour.parent for contour in contours}
     ordered = order(cuts, parents=parents, start=_to_sheet(robot.workspace.park, placement))
     waste = Waste(contours, kerf=process.kerf, is_allowed=reach.is_allowed)
@@ -47,7 +49,7 @@ def ways(
         nearest = min(choices, key=lambda one: _away(cut, one, place), default=None)
         done.append(cut if nearest is None else begun(cut, nearest, process=process, tick=reach.tick))
         place = done[-1].way[-1].curve.ends[-1] if done[-1].way else done[-1].curve.ends[-1]
-    return Ways(tuple(done), findings)
+    return Ways(feeds.in_bends(done, contours, process=process), findings)
 
 
 def _away(cut: Cut, approach: Approach, place: Array) -> float:

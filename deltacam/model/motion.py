@@ -40,10 +40,12 @@ class Stretch:
     Attributes:
         kind: what is done there. The laser is off in a tab and in a lead-out, and on in all others.
         curve: open, sheet frame, m; it begins where the stretch before it ends.
+        feed: m/s; None is that of the cut.
     """
 
     kind: BlockKind
     curve: Curve
+    feed: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

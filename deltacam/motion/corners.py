@@ -62,6 +62,7 @@ def pieces(
     z: float,
     pace: Pace | None = None,
     stretch: IntArray | None = None,
+    speed: Array | None = None,
 ) -> tuple[Path, ...]:
     """Split a cut at the corners to stop at, and smooth the rest.
 
@@ -73,16 +74,20 @@ def pieces(
         z: height of the sheet, m.
         pace: of the tool; where it is known, corners at which a stop takes less time than a blend are stopped at.
         stretch: that each segment of the cut belongs to, (M,); of a blend each half belongs to its own side.
+        speed: not to be exceeded in each segment of the cut, (M,) m/s; in a blend the smaller one beside it counts.
 
     Returns:
         paths whose segments are tangent, each to be run from rest to rest, together the whole cut.
     """
     largest = SHARPEST_PASSED if corner == "stop" else SHARPEST_IN_CHAIN
     stretch = np.zeros(len(cut.bulges), dtype=np.int64) if stretch is None else stretch
+    speed = np.full(len(cut.bulges), np.inf) if speed is None else speed
     whole, kept = _without_slivers(cut)
     if whole is not cut:
         deviation = max(deviation - _SHORTEST_SEGMENT, 0.0)
-    curve, off, first = fit(whole, allowance=CHAINS * deviation, largest_corner=largest, stretch=stretch[kept])
+    changes = [own[1:] != own[:-1] for own in (stretch[kept], speed[kept])]
+    owner = np.concatenate([[0], np.cumsum(changes[0] | changes[1])])
+    curve, off, first = fit(whole, allowance=CHAINS * deviation, largest_corner=largest, stretch=owner)
     angle = curves.corner_angles(curve)[1 if curve.closed else 0 :]
     curvature = curves.curvatures(curve)
     turns = np.abs(angle) > _TANGENT
@@ -96,7 +101,8 @@ def pieces(
     blends, reach = _blends(curve, angle, wanted, left)
     if pace is not None:
         reach[(np.abs(angle) > SHARPEST_PASSED) & _slower_than_a_stop(blends, pace)] = 0.0
-    return _assemble(curve, blends, reach, np.flatnonzero(needed & (reach == 0.0)) + 1, stretch[kept][first], z)
+    stops = np.flatnonzero(needed & (reach == 0.0)) + 1
+    return _assemble(curve, blends, reach, stops, stretch[kept][first], speed[kept][first], z)
 
 
 def _slower_than_a_stop(blends: Blends, pace: Pace) -> BoolArray:
@@ -190,7 +196,7 @@ def _room(joints: Joints, length: Array, wanted: BoolArray, deviation: Array) ->
 
 
 def _assemble(
-    curve: Curve, blends: Blends, reach: Array, stops: IntArray, stretch: IntArray, z: float
+    curve: Curve, blends: Blends, reach: Array, stops: IntArray, stretch: IntArray, speed: Array, z: float
 ) -> tuple[Path, ...]:
     """The paths between the stops, with the blends at the corners that have a reach."""
     count = len(curve.bulges)
@@ -213,7 +219,9 @@ def _assemble(
     places = np.concatenate([start[:, None], np.concatenate([blends.start, np.zeros((1, PIECES, 2))])], axis=1)
     after = np.append(stretch[1:], stretch[-1:])
     owner = np.stack([stretch, *[stretch] * (PIECES - 1), after], axis=1).ravel()[kept]
-    whole = Path(places.reshape(-1, 2)[kept], heading, curvature, sharpness, length, owner, z)
+    slower = np.minimum(speed, np.append(speed[1:], speed[-1:]))
+    fastest = np.stack([speed, *[slower] * PIECES], axis=1).ravel()[kept]
+    whole = Path(places.reshape(-1, 2)[kept], heading, curvature, sharpness, length, owner, fastest, z)
     halved = (stretch != after) & (tail > 0.0)
     counts = kept.reshape(count, -1).sum(axis=1)
     whole = _halved(whole, (np.cumsum(counts) - 2)[halved], after[halved])
@@ -237,5 +245,6 @@ def _halved(path: Path, segments: IntArray, behind: IntArray) -> Path:
         np.insert(path.sharpness, at, path.sharpness[segments]),
         np.insert(length, at, half),
         np.insert(path.stretch, at, behind),
+        np.insert(path.speed, at, path.speed[segments]),
         path.z,
     )

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from deltacam.geometry import curve as curves
-from deltacam.model import BlockKind, Curve, Cut, IntArray, Operation, Stretch
+from deltacam.model import Array, BlockKind, Curve, Cut, IntArray, Operation, Stretch
 from deltacam.motion.tape import NUMBER
 
 
@@ -19,11 +19,13 @@ class Part(NamedTuple):
     Attributes:
         curve: of all its stretches, sheet frame.
         stretch: (M,) what is done along each segment, as `tape.KINDS` numbers it.
+        speed: (M,) m/s, not to be exceeded in each segment; infinite where the cut's own feed counts.
         is_tab: whether it is run with the laser off, from where the part before it ended.
     """
 
     curve: Curve
     stretch: IntArray
+    speed: Array
     is_tab: bool
 
 
@@ -33,6 +35,7 @@ def parts(cut: Cut) -> Iterator[Part]:
     way = cut.way or (Stretch(kind, cut.curve),)
     for is_tab, stretches in itertools.groupby(way, key=lambda one: one.kind is BlockKind.TAB):
         found = tuple(stretches)
-        numbers = [NUMBER[one.kind] for one in found]
-        stretch = np.repeat(numbers, [len(one.curve.bulges) for one in found])
-        yield Part(curves.chain([one.curve for one in found]), stretch, is_tab)
+        counts = [len(one.curve.bulges) for one in found]
+        stretch = np.repeat([NUMBER[one.kind] for one in found], counts)
+        speed = np.repeat([np.inf if one.feed is None else one.feed for one in found], counts)
+        yield Part(curves.chain([one.curve for one in found]), stretch, speed, is_tab)

@@ -22,7 +22,7 @@ import numpy as np
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.machine import cores
-from deltacam.model import Corner, Curve, IntArray
+from deltacam.model import Array, Corner, Curve, IntArray
 from deltacam.motion.corners import Pace, pieces
 from deltacam.motion.parametrize import UndrivableError, load_solver
 from deltacam.motion.path import Path
@@ -46,6 +46,7 @@ class Drawn(NamedTuple):
 
     curve: Curve
     stretch: IntArray
+    speed: Array
     corner: Corner
     deviation: float
     pace: Pace | None
@@ -61,6 +62,7 @@ class Drawn(NamedTuple):
             z=self.z,
             pace=self.pace,
             stretch=self.stretch,
+            speed=self.speed,
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from deltacam.geometry import curve as curves
 from deltacam.model import Array, BlockKind, Cut, Mode, Operation, Placement, Process
 from deltacam.motion.corners import Pace
 from deltacam.motion.parts import parts
+from deltacam.motion.power import powers
 from deltacam.motion.route import Limits
 from deltacam.motion.schedule import Drawn, Move
 from deltacam.motion.tape import Setpoints, Tape
@@ -60,7 +62,11 @@ def plan_motion(
         RobotError: a move leaves the reach.
     """
     tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error, mode=mode)
-    return tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
+    found = tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
+    if mode is not Mode.CUT:
+        return found
+    kinds = [block.kind for block in found.blocks]
+    return replace(found, power=powers(found.q, found.block, kinds, robot=robot, process=process))
 
 
 def moves_of(
@@ -84,6 +90,7 @@ def _taped(
     tape.rest(BlockKind.RAPID, ticks=1)
     for cut in cuts:
         way = ways[cut.operation]
+        limits = way.limits if cut.feed is None else working_limits(robot, process, cut.feed)
         power = way.power if mode is Mode.CUT else 0.0
         for part in parts(cut):
             curve = curves.transform(part.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
@@ -91,9 +98,9 @@ def _taped(
                 tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
                 tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
                 tape.rest(BlockKind.RAPID, ticks=0 if way.pierce else apart)
-            pace = _pace(robot, way.limits, (*curve.points[0], placement.z))
-            drawn = Drawn(curve, part.stretch, process.corner, deviation, pace, placement.z)
-            tape.work(drawn, way.limits, power=power, cut=cut)
+            pace = _pace(robot, limits, (*curve.points[0], placement.z))
+            drawn = Drawn(curve, part.stretch, part.speed, process.corner, deviation, pace, placement.z)
+            tape.work(drawn, limits, power=power, cut=cut)
             tape.rest(BlockKind.RAPID, ticks=apart)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)

@@ -36,6 +36,7 @@ def tiles(summary: Mapping[str, Any], program: Program) -> str:
         "contours engraved": str(engraved) if engraved else "",
         "part": f"{size} mm" if size else "",
         "unit of the drawing": str(summary.get("unit", "")),
+        "energy per mm": _energy(summary.get("line_energy", {})),
         "feed": f"{_number(to_mm(program.process.feed))} mm/s",
         "process": program.process.name,
         "robot": program.robot.name,
@@ -43,6 +44,14 @@ def tiles(summary: Mapping[str, Any], program: Program) -> str:
     }
     cells = (f"<div><dt>{shown(name)}</dt><dd>{shown(value)}</dd></div>" for name, value in tiles.items() if value)
     return f"<dl>{''.join(cells)}</dl>\n{_shares(summary.get('share_of_limit', {}))}"
+
+
+def _energy(found: Mapping[str, float]) -> str:
+    """The most that a millimetre gets, in J where the power of the laser is known."""
+    if "most" not in found:
+        return ""
+    joules = f"{_number(found['most'] * found['at_feed_j_mm'])} J, " if "at_feed_j_mm" in found else ""
+    return f"up to {joules}{found['most']:.3g} \u00d7 that at the feed"
 
 
 def _shares(shares: Mapping[str, float]) -> str:

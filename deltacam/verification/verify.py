@@ -27,6 +27,7 @@ CONTOUR_CHECKS: Final = (
     "uncut length",
     "cut length",
     "material cut twice",
+    "reduced feed",
     "part size",
     "part edge",
     "pierce outside the part",

@@ -55,6 +55,10 @@ OF_MOTION: dict[str, Kind] = {
     ),
     "played faster: feed": Kind(in_motion.faster_feed, ("feed while cutting",), LIMIT, 1.01, 3.0, 0.99),
     "a slower feed in the meta": Kind(in_motion.slower_feed_in_meta, ("feed while cutting",), LIMIT, 1.01, 3.0, 0.99),
+    "a slower feed in holes in the meta": Kind(
+        in_motion.slower_holes_in_meta, ("reduced feed",), LIMIT, 1.01, 3.0, 0.99
+    ),
+    "a slower feed in bends in the meta": Kind(in_motion.slower_bends_in_meta, ("reduced feed",), LIMIT, 1.01, 3.0),
     "a cut resampled faster": Kind(in_motion.faster_cut, ("feed while cutting",), LIMIT, 1.01, 3.0),
     "a jolt: joint speed": Kind(in_motion.jolt(of_joints(1)), ("joint speed",), LIMIT, 1.01, 10.0, 0.99),
     "a jolt: joint acceleration": Kind(in_motion.jolt(of_joints(2)), ("joint acceleration",), LIMIT, 1.01, 10.0, 0.99),
@@ -83,6 +87,9 @@ OF_LASER: dict[str, Kind] = {
     ),
     "laser off in a pierce": Kind(in_laser.off_in(BlockKind.PIERCE), ("laser on in all cuts",), "no tick", 1, 1000),
     "laser weaker for a tick": Kind(in_laser.weaker, ("laser on in all cuts",), "nothing", 1e-9, 0.5),
+    "a power beside its law": Kind(
+        in_laser.beside_the_law, ("laser on in all cuts",), "a thousandth of the rated power", 1.1, 50.0, 0.9
+    ),
     "a power of more than 1": Kind(in_laser.too_strong, ("laser power from 0 to 1",), "nothing", 1e-9, 1.0),
     "a power of less than 0": Kind(in_laser.negative, ("laser power from 0 to 1",), "nothing", 1e-9, 1.0),
     "another power in the meta": Kind(in_laser.other_power_in_meta, ("laser on in all cuts",), "nothing", 1e-9, 0.5),

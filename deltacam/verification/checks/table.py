@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from deltacam.model import Check
-from deltacam.verification.checks import contours, file, laser, limits, overlap, parts, path, reach, stretches
+from deltacam.verification.checks import contours, file, laser, limits, overlap, parts, path, reach, reduced, stretches
 from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import Evidence
 
@@ -58,6 +58,7 @@ OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     path.uncut,
     path.cut_length,
     overlap.cut_again,
+    reduced.reduced_feed,
     parts.part_size,
     parts.part_edge,
     parts.pierce_outside,
