@@ -49,6 +49,11 @@ def test_a_number_that_a_file_can_state_comes_back_to_the_last_bit(
     assert read(tmp_path_factory.mktemp("written"), to_toml(process)) == process
 
 
+def test_a_number_of_many_digits_is_not_shortened(tmp_path: Path) -> None:
+    process = replace(DEFAULT, kerf=0.17272727272727276 / 1e3, feed=8.123456789012345 / 60.0)
+    assert read(tmp_path, to_toml(process)) == process
+
+
 @given(feed=st.floats(1e-5, 16.0), tolerance=st.floats(2e-6, 1e-3))
 def test_any_number_comes_back_nearly(tmp_path_factory: pytest.TempPathFactory, feed: float, tolerance: float) -> None:
     process = replace(DEFAULT, feed=feed, feeds=None, tolerance=tolerance)

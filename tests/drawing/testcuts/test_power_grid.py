@@ -51,6 +51,16 @@ def test_the_place_of_a_cell_is_where_its_square_lies_in_the_grid(tmp_path: Path
         np.testing.assert_allclose(place - middle, cell.place, atol=1e-8)
 
 
+def test_powers_go_upwards_and_feeds_to_the_right() -> None:
+    cells = [cell for cell in power_grid(ACRYLIC).cells if cell.power is not None]
+    assert [cell.power for cell in sorted(cells, key=lambda one: one.place[1])] == [
+        power for power in powers(ACRYLIC) for _ in feeds(ACRYLIC)
+    ]
+    assert [cell.feed for cell in sorted(cells, key=lambda one: one.place[0])] == [
+        feed for feed in feeds(ACRYLIC) for _ in powers(ACRYLIC)
+    ]
+
+
 def test_one_begins_with_what_burns_least() -> None:
     cells = power_grid(ACRYLIC).cells
     assert cells[0].layer == ENGRAVED
