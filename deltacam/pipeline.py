@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from deltacam.cutting import feeds, kerf, order, placement
+from deltacam.cutting import feeds, kerf, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
+from deltacam.cutting.ways import Ways, ways
 from deltacam.drawing.reader import read_drawing
 from deltacam.model import (
     EVERYTHING,
@@ -240,7 +241,7 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
         unit=part.unit_in_words,
         metres_per_unit=part.metres_per_unit,
     )
-    moves = (_frame if how.mode is Mode.FRAME else _cutting)(part, shifted.cuts, how, where)
+    moves, findings = (_frame if how.mode is Mode.FRAME else _cutting)(part, shifted.cuts, how, where)
     program = Program(
         robot=robot,
         placement=where,
@@ -252,7 +253,7 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
         power=moves.power,
         block=moves.block,
     )
-    return program, moves.held, shifted.findings
+    return program, moves.held, (*shifted.findings, *findings)
 
 
 def _placed(part: Drawing, how: _How, by: By) -> Found:
@@ -268,14 +269,14 @@ def _placed(part: Drawing, how: _How, by: By) -> Found:
 
     def sample(at: tuple[float, float], rotation: float) -> Sampled:
         where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
-        ordered, error = _ordered(part, cuts, how, where), part.conversion_error
+        ordered, error = _ways(part, cuts, how, where).cuts, part.conversion_error
         moves, rests = setpoints.moves_of(ordered, robot=robot, process=process, placement=where, drawing_error=error)
         park, resting = np.array(robot.workspace.park), (rests - 1) / robot.controller.rate_hz
         return Sampled.of(moves, at=at, rotation=rotation, park=park, resting=resting)
 
     def duration(at: tuple[float, float], rotation: float) -> float:
         where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
-        return (len(_cutting(part, cuts, quiet, where).q) - 1) / robot.controller.rate_hz
+        return (len(_cutting(part, cuts, quiet, where)[0].q) - 1) / robot.controller.rate_hz
 
     task = Task(footprint, robot, sample, duration)
     return find(task, by=by, progress=lambda done, total: how.progress("place", done, total))
@@ -294,17 +295,18 @@ def _where(found: Found) -> Finding:
     return Finding(f"{what}; {times}, error of the tool {errors}", kind="place")
 
 
-def _ordered(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Cut, ...]:
-    parents = {contour.number: contour.parent for contour in part.contours}
-    ordered = order.order(cuts, parents=parents, start=_to_sheet(how.robot.workspace.park, where))
-    return feeds.in_bends(ordered, part.contours, process=how.process)
+def _ways(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Ways:
+    found = ways(cuts, part.contours, process=how.process, robot=how.robot, placement=where)
+    return found._replace(cuts=feeds.in_bends(found.cuts, part.contours, process=how.process))
 
 
-def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Setpoints:
+def _cutting(
+    part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement
+) -> tuple[Setpoints, tuple[Finding, ...]]:
     how.progress("order", 0, 1)
-    ordered = _ordered(part, cuts, how, where)
-    return setpoints.plan_motion(
-        ordered,
+    found = _ways(part, cuts, how, where)
+    moves = setpoints.plan_motion(
+        found.cuts,
         robot=how.robot,
         process=how.process,
         placement=where,
@@ -314,19 +316,14 @@ def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) 
         what_if=how.what_if,
         progress=lambda done, total: how.progress("motion", done, total),
     )
+    return moves, found.findings
 
 
-def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Setpoints:
+def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Setpoints, tuple[Finding, ...]]:
     (left, bottom), (right, top) = placement.bounding_box(cuts)
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
     placement.refuse_frame_outside(corners, robot=how.robot, placement=where)
-    return setpoints.plan_frame(corners, robot=how.robot, process=how.process, placement=where)
-
-
-def _to_sheet(place: tuple[float, float], where: Placement) -> tuple[float, float]:
-    x, y = place[0] - where.x, place[1] - where.y
-    cos, sin = np.cos(where.rotation), np.sin(where.rotation)
-    return float(cos * x + sin * y), float(cos * y - sin * x)
+    return setpoints.plan_frame(corners, robot=how.robot, process=how.process, placement=where), ()
 
 
 def _content(program: Program) -> bytes:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from deltacam_cli import options
+from deltacam_cli.process_options import PROCESS_OPTIONS, with_options
 
 if TYPE_CHECKING:
     from deltacam.defaults import Defaults
@@ -41,12 +41,7 @@ _MACHINE = (
 )
 _VALUES = (
     click.option("--accept-loss", is_flag=True, help="Plan what could be read of a damaged drawing."),
-    click.option("--kerf", metavar="LENGTH", help="Width of the cut, mm unless a unit is given (0.008in)."),
-    click.option("--feed", metavar="SPEED", help="Cutting speed, mm/s unless a unit is given (12m/min)."),
-    click.option(
-        "--tolerance", metavar="LENGTH", help="Largest deviation from the kerf path, mm unless a unit is given."
-    ),
-    click.option("--corner", type=click.Choice(["round", "stop"]), help="Round corners within the tolerance, or stop."),
+    *PROCESS_OPTIONS,
     click.option(
         "--jerk", metavar="JERK", help="Largest joint jerk, deg/s3 (or 3500rad/s3), or none; else the robot's."
     ),
@@ -122,17 +117,9 @@ def settings(
     }
 
 
-def _process(
-    name: str | None, own: Defaults, *, kerf: str | None, feed: str | None, tolerance: str | None, corner: str | None
-) -> Process:
+def _process(name: str | None, own: Defaults, **single_values: str | None) -> Process:
     """The process with the single values that the command line gives."""
     from deltacam.cutting.process import DEFAULT_PROCESS, load_process
 
-    values: dict[str, Any] = {
-        "kerf": options.length("--kerf", kerf),
-        "feed": options.speed("--feed", feed),
-        "tolerance": options.length("--tolerance", tolerance),
-        "corner": corner,
-    }
     process = options.load(load_process, name, own.process, DEFAULT_PROCESS, f"{own.file}: process")
-    return replace(process, **{key: value for key, value in values.items() if value is not None})
+    return with_options(process, **single_values)

@@ -73,7 +73,7 @@ def pieces(
         ramps: whether the curvature may not jump either.
         z: height of the sheet, m.
         pace: of the tool; where it is known, corners at which a stop takes less time than a blend are stopped at.
-        stretch: that each segment of the cut belongs to, (M,); a blend belongs to the larger number beside it.
+        stretch: that each segment of the cut belongs to, (M,); of a blend each half belongs to its own side.
         speed: not to be exceeded in each segment of the cut, (M,) m/s; in a blend the smaller one beside it counts.
 
     Returns:
@@ -217,11 +217,34 @@ def _assemble(
         )
     )
     places = np.concatenate([start[:, None], np.concatenate([blends.start, np.zeros((1, PIECES, 2))])], axis=1)
-    between = np.maximum(stretch, np.append(stretch[1:], stretch[-1:]))
-    owner = np.stack([stretch, *[between] * PIECES], axis=1).ravel()[kept]
+    after = np.append(stretch[1:], stretch[-1:])
+    owner = np.stack([stretch, *[stretch] * (PIECES - 1), after], axis=1).ravel()[kept]
     slower = np.minimum(speed, np.append(speed[1:], speed[-1:]))
     fastest = np.stack([speed, *[slower] * PIECES], axis=1).ravel()[kept]
     whole = Path(places.reshape(-1, 2)[kept], heading, curvature, sharpness, length, owner, fastest, z)
-    first = np.concatenate([[0], np.cumsum(kept.reshape(count, -1).sum(axis=1))])
+    halved = (stretch != after) & (tail > 0.0)
+    counts = kept.reshape(count, -1).sum(axis=1)
+    whole = _halved(whole, (np.cumsum(counts) - 2)[halved], after[halved])
+    first = np.concatenate([[0], np.cumsum(counts + halved)])
     edges = [0, *first[stops].tolist(), len(whole.length)]
     return tuple(whole.part(a, b) for a, b in itertools.pairwise(edges))
+
+
+def _halved(path: Path, segments: IntArray, behind: IntArray) -> Path:
+    """The path with some segments (K,) cut in the middle, whose second halves belong to the stretches ``behind``."""
+    if not len(segments):
+        return path
+    half = 0.5 * path.length[segments]
+    points, tangent, _, _ = path.evaluate(segments, half)
+    length, at = path.length.copy(), segments + 1
+    length[segments] = half
+    return Path(
+        np.insert(path.start, at, points[:, :2], axis=0),
+        np.insert(path.heading, at, np.arctan2(tangent[:, 1], tangent[:, 0])),
+        np.insert(path.curvature, at, path.curvature[segments] + path.sharpness[segments] * half),
+        np.insert(path.sharpness, at, path.sharpness[segments]),
+        np.insert(length, at, half),
+        np.insert(path.stretch, at, behind),
+        np.insert(path.speed, at, path.speed[segments]),
+        path.z,
+    )

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 KINDS: Final = tuple(
     BlockKind(name) for name in ["rapid", "pierce", "engrave", "cut", "overcut", "loop", "lead_in", "lead_out", "tab"]
 )
-"""The numbers of stretches. A blend between two of them belongs to the larger one: never to the cut beside a lead."""
+"""What the numbers of stretches stand for."""
 
 NUMBER: Final = {kind: number for number, kind in enumerate(KINDS)}
 

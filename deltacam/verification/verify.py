@@ -32,6 +32,8 @@ CONTOUR_CHECKS: Final = (
     "part edge",
     "pierce outside the part",
     "leads outside the part",
+    "overcut",
+    "tab width",
     "gap at the end of a cut",
     "inner contours first",
     "contours cut last",

@@ -6,7 +6,18 @@ from collections.abc import Callable
 from typing import Final
 
 from deltacam.model import Check
-from deltacam.verification.checks import contours, file, laser, limits, overlap, parts, path, reach, reduced
+from deltacam.verification.checks import (
+    contours,
+    file,
+    laser,
+    limits,
+    overlap,
+    parts,
+    path,
+    reach,
+    reduced,
+    stretches,
+)
 from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import Evidence
 
@@ -26,6 +37,7 @@ OF_SETPOINTS: Final[tuple[Callable[[Evidence], Check], ...]] = (
     laser.laser_on,
     laser.pierce_before_cut,
     laser.cut_after_pierce,
+    stretches.in_order,
     reach.poses,
 )
 """Checks that need the rows alone."""
@@ -62,6 +74,8 @@ OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     parts.part_edge,
     parts.pierce_outside,
     parts.leads_outside,
+    stretches.overcut,
+    stretches.tab_width,
     contours.closed,
     contours.holes_first,
     contours.contours_last,

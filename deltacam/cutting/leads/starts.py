@@ -1,0 +1,59 @@
+"""Where on a closed cut it may begin, by the rule of the process."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from deltacam.geometry import curve as curves
+from deltacam.model import Array, Curve, IntArray, StartRule
+
+_SHARP: Final = np.radians(10.0)
+
+
+def starts(curve: Curve, rule: StartRule, *, count: int, rounding: float) -> tuple[IntArray, Array]:
+    """Places where a closed cut may begin.
+
+    Args:
+        curve: of the cut.
+        rule: at corners, in the middle of the longest edge, or spread around it.
+        count: about how many places where they are spread.
+        rounding: the radius that corners may have been rounded with, m.
+
+    Returns:
+        the segments (K,) and the distances from their starts (K,) m.
+    """
+    length = curves.lengths(curve)
+    if rule == "corner":
+        corners = _corners(curve, length, rounding)
+        if len(corners):
+            return corners, np.zeros(len(corners))
+    if rule == "best":
+        return _spread(curve, length, count)
+    straight = np.where(curve.bulges == 0.0, length, 0.0)
+    longest = int(np.argmax(straight if straight.any() else length))
+    return np.array([longest]), 0.5 * length[[longest]]
+
+
+def _corners(curve: Curve, length: Array, rounding: float) -> IntArray:
+    """The segments that begin at a corner, or behind the round of one."""
+    behind = np.roll(curve.bulges != 0.0, 1) & (
+        np.roll(length / np.maximum(np.abs(curves.turns(curve)), 1e-12), 1) <= rounding
+    )
+    behind &= np.roll(np.abs(curves.turns(curve)), 1) > _SHARP
+    sharp = np.abs(curves.corner_angles(curve)) > _SHARP
+    return np.flatnonzero((sharp | behind) & (length > 2.0 * rounding))
+
+
+def _spread(curve: Curve, length: Array, count: int) -> tuple[IntArray, Array]:
+    """Places around the cut; where one lies on a long straight edge, it is moved to the middle of that."""
+    ends = np.cumsum(length)
+    share = ends[-1] / count
+    at = (np.arange(count) + 0.5) * share
+    segment = np.minimum(np.searchsorted(ends, at, side="right"), len(length) - 1)
+    distance = at - (ends[segment] - length[segment])
+    middle = (curve.bulges[segment] == 0.0) & (length[segment] > 0.5 * share) & (length[segment] < 2.5 * share)
+    distance = np.where(middle, 0.5 * length[segment], distance)
+    places = np.unique(np.stack([segment, distance], axis=1), axis=0)
+    return places[:, 0].astype(np.int64), places[:, 1]
