@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from deltacam.cutting import feeds, kerf, placement
+from deltacam.cutting import kerf, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
 from deltacam.cutting.ways import Ways, ways
 from deltacam.drawing.reader import read_drawing
@@ -232,7 +232,6 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
     where = placement.place(part.contours, robot=robot, at=how.at, rotation=how.rotation)
     how.progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
-    shifted = replace(shifted, cuts=feeds.in_holes(shifted.cuts, part.contours, process=process))
     placement.refuse_outside(
         shifted.cuts,
         contours=part.contours,
@@ -262,7 +261,7 @@ def _placed(part: Drawing, how: _How, by: By) -> Found:
     if any(contour.operation is Operation.ENGRAVE for contour in part.contours):
         setpoints.engraving(process)
     how.progress("kerf", 0, 1)
-    cuts = feeds.in_holes(kerf.offset(part.contours, kerf=process.kerf).cuts, part.contours, process=process)
+    cuts = kerf.offset(part.contours, kerf=process.kerf).cuts
     footprint = placement.footprint(cuts, part.contours)
     placement.refuse_everywhere(footprint, robot=robot)
     quiet = how._replace(what_if=False, mode=Mode.CUT, progress=_silent)
@@ -296,8 +295,7 @@ def _where(found: Found) -> Finding:
 
 
 def _ways(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Ways:
-    found = ways(cuts, part.contours, process=how.process, robot=how.robot, placement=where)
-    return found._replace(cuts=feeds.in_bends(found.cuts, part.contours, process=how.process))
+    return ways(cuts, part.contours, process=how.process, robot=how.robot, placement=where)
 
 
 def _cutting(

@@ -1,4 +1,4 @@
-"""From the cuts of a drawing to the ways of the tool along them, in order: leads, then the order."""
+"""From the cuts of a drawing to the ways of the tool along them: leads, the order, loops, tabs and slow bends."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from deltacam.cutting import feeds
 from deltacam.cutting.leads.approaches import Approach, approaches, begun
 from deltacam.cutting.leads.reach import Reach
 from deltacam.cutting.leads.waste import Waste
 from deltacam.cutting.order import order
+from deltacam.cutting.shaping import looped, tabbed
 from deltacam.model import Array, Contour, Cut, Finding, Placement, Process
 
 if TYPE_CHECKING:
@@ -37,6 +39,7 @@ def ways(
         placement: of the sheet frame.
     """
     reach = Reach(robot, placement)
+    cuts = feeds.in_holes(cuts, contours, process=process)
     parents = {contour.number: contour.parent for contour in contours}
     ordered = order(cuts, parents=parents, start=_to_sheet(robot.workspace.park, placement))
     waste = Waste(contours, kerf=process.kerf, is_allowed=reach.is_allowed)
@@ -47,7 +50,9 @@ def ways(
         nearest = min(choices, key=lambda one: _away(cut, one, place), default=None)
         done.append(cut if nearest is None else begun(cut, nearest, process=process, tick=reach.tick))
         place = done[-1].way[-1].curve.ends[-1] if done[-1].way else done[-1].curve.ends[-1]
-    return Ways(tuple(done), findings)
+    with_loops, of_loops = looped(done, contours, process=process, waste=waste, reach=reach)
+    with_tabs, of_tabs = tabbed(with_loops, contours, process=process)
+    return Ways(feeds.in_bends(with_tabs, contours, process=process), (*findings, *of_loops, *of_tabs))
 
 
 def _away(cut: Cut, approach: Approach, place: Array) -> float:

@@ -174,7 +174,7 @@ def _rows(
         segment, distance = starts(cut.curve, process.start, count=count, rounding=0.51 * process.kerf)
         place, heading = curves.evaluate(cut.curve, segment, distance)
         far, onwards = _beyond(cut.curve, segment, distance, _overcut(process, cut, tick))
-        side = np.full(len(segment), _side(cut, drawn[cut.contour], process.kerf))
+        side = np.full(len(segment), waste_side(cut, drawn[cut.contour], process.kerf))
         columns.append((np.full(len(segment), index), segment, distance, place, heading, far, onwards, side))
     of, segment, distance, place, heading, far, onwards, side = (
         np.concatenate(part) for part in zip(*columns, strict=True)
@@ -191,7 +191,7 @@ def _beyond(curve: Curve, segment: IntArray, distance: Array, way: float) -> tup
     return curves.evaluate(curve, on, at - (ends[on] - length[on]))
 
 
-def _side(cut: Cut, contour: Contour, kerf: float) -> float:
+def waste_side(cut: Cut, contour: Contour, kerf: float) -> float:
     """On which side of a cut the waste is: 1 for left, inside of it, and -1 for right, outside."""
     if contour.is_hole:
         return 1.0

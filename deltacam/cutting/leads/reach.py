@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
+import shapely.affinity
 
 from deltacam.cutting.fitting import OUTSIDE
 from deltacam.cutting.leads.sizes import Ability, ability
@@ -30,6 +32,17 @@ class Reach:
     def is_allowed(self, points: Array) -> BoolArray:
         """Which places lie in the robot's workspace, (N,)."""
         return np.asarray(self.robot.workspace.excess(self._in_machine(points)) <= OUTSIDE)
+
+    def area(self) -> shapely.Polygon:
+        """The workspace in the sheet frame; a disc as a polygon within it."""
+        sheet, where = self.robot.workspace, self.placement
+        if sheet.radius is not None:
+            area = shapely.Point(0.0, 0.0).buffer(sheet.radius, quad_segs=256)
+        else:
+            x, y = 0.5 * (sheet.width or 0.0), 0.5 * (sheet.depth or 0.0)
+            area = shapely.box(-x, -y, x, y)
+        moved = shapely.affinity.translate(area, -where.x, -where.y)
+        return shapely.affinity.rotate(moved, -where.rotation, origin=(0.0, 0.0), use_radians=True)
 
     def able(self, points: Array) -> Ability:
         """What the tool can do at places."""

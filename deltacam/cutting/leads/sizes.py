@@ -83,6 +83,11 @@ def smallest_radius(feed: Array, able: Ability, deviation: float) -> Array:
     return np.asarray(np.maximum(by_acceleration, by_jerk))
 
 
+def bend(feed: Array, able: Ability, deviation: float) -> Array:
+    """The radius that an arc of a lead or a loop should have, (N,) m; see `smallest_radius`."""
+    return np.maximum(_MORE * smallest_radius(feed, able, deviation), _SHORTEST)
+
+
 def wanted(lead: Lead, feed: Array, able: Ability, deviation: float) -> Size:
     """The size that a lead should have where the tool is to go at ``feed``, (N,) m/s.
 
@@ -105,7 +110,7 @@ def wanted(lead: Lead, feed: Array, able: Ability, deviation: float) -> Size:
     elif lead.length is not None:
         radius = length / turn if lead.shape == "arc" else 0.5 * length / turn
     else:
-        radius = np.maximum(_MORE * smallest_radius(feed, able, deviation), _SHORTEST)
+        radius = bend(feed, able, deviation)
         if lead.shape == "arc":
             radius = np.maximum(radius, _MORE * length / turn)
     line = none if lead.shape == "arc" else np.maximum(length - radius * turn, 0.0)

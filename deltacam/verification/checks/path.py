@@ -11,10 +11,11 @@ from deltacam.model import Array, BlockKind, Check, IntArray
 from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison, Target
 from deltacam.verification.evidence import MOVING_KINDS, Evidence, to_sheet
-from deltacam.verification.kerf_path import ACCURACY, all_corners, sharp_corners
+from deltacam.verification.kerf_path import ACCURACY, all_corners, flattened, sharp_corners
 from deltacam.verification.near import Lines
 from deltacam.verification.way import motion
 
+_LOOPS: Final = frozenset({BlockKind.LOOP})
 _TABS: Final = frozenset({BlockKind.TAB})
 _ALONG_KINDS: Final = frozenset({BlockKind.CUT, BlockKind.ENGRAVE}) | _TABS
 
@@ -143,9 +144,24 @@ def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tupl
     if tabs and len(left):
         left = left[_lines(evidence, tabs, near).distance(samples[left], exact_above=near / 2.0) > near]
     left = left[~_in_rounded_corner(target, samples[left], distance[left], near)]
+    if any(evidence.stretches(run, _LOOPS) for run in target.runs):
+        left = left[~_burnt_at_corner(evidence, target, samples[left], distance[left], near)]
     if not len(left):
         return 0.0, (0.0, 0.0)
     return float(share[left].sum()), (float(samples[left[0], 0]), float(samples[left[0], 1]))
+
+
+def _burnt_at_corner(evidence: Evidence, target: Target, points: Array, distance: Array, near: float) -> np.ndarray:
+    """Which ``points`` (M, 2) of a round about a drawn corner are burnt by the beam, whose way passes at ``distance``.
+
+    A loop goes straight on where the path turns about the corner, and back from the other side.
+    """
+    half = evidence.program.process.kerf / 2.0
+    tips, _ = sharp_corners(flattened(target.contour), closed=target.contour.curve.closed)
+    if not len(points) or not len(tips):
+        return np.zeros(len(points), dtype=bool)
+    away, _ = cKDTree(tips).query(points)
+    return np.asarray((away <= half + near) & (distance <= half))
 
 
 def _lines(evidence: Evidence, spans: list[tuple[int, int]], near: float) -> Lines:

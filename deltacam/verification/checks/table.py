@@ -6,18 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from deltacam.model import Check
-from deltacam.verification.checks import (
-    contours,
-    file,
-    laser,
-    limits,
-    overlap,
-    parts,
-    path,
-    reach,
-    reduced,
-    stretches,
-)
+from deltacam.verification.checks import contours, file, laser, limits, overlap, parts, path, reach, reduced, stretches
 from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import Evidence
 
