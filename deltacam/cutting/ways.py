@@ -1,4 +1,4 @@
-"""From the cuts of a drawing to the ways of the tool along them: leads, the order, loops, tabs and slow bends."""
+"""From the cuts of a drawing to the ways of the tool along them: leads, the order, loops, tabs, slow bends, passes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from deltacam.cutting.leads.approaches import Approach, approaches, begun
 from deltacam.cutting.leads.reach import Reach
 from deltacam.cutting.leads.waste import Waste
 from deltacam.cutting.order import order
-from deltacam.cutting.shaping import looped, tabbed
+from deltacam.cutting.shaping import looped, repeated, tabbed
 from deltacam.model import Array, Contour, Cut, Finding, Placement, Process
 
 if TYPE_CHECKING:
@@ -52,7 +52,8 @@ def ways(
         place = done[-1].way[-1].curve.ends[-1] if done[-1].way else done[-1].curve.ends[-1]
     with_loops, of_loops = looped(done, contours, process=process, waste=waste, reach=reach)
     with_tabs, of_tabs = tabbed(with_loops, contours, process=process)
-    return Ways(feeds.in_bends(with_tabs, contours, process=process), (*findings, *of_loops, *of_tabs))
+    slowed = feeds.in_bends(with_tabs, contours, process=process)
+    return Ways(repeated(slowed, process=process), (*findings, *of_loops, *of_tabs))
 
 
 def _away(cut: Cut, approach: Approach, place: Array) -> float:
