@@ -36,7 +36,7 @@ def tiles(summary: Mapping[str, Any], program: Program) -> str:
         "contours engraved": str(engraved) if engraved else "",
         "part": f"{size} mm" if size else "",
         "unit of the drawing": str(summary.get("unit", "")),
-        "energy per mm": _energy(summary.get("line_energy", {})),
+        "most energy per mm": _energy(summary.get("line_energy", {})),
         "feed": f"{_number(to_mm(program.process.feed))} mm/s",
         "process": program.process.name,
         "robot": program.robot.name,
@@ -51,7 +51,7 @@ def _energy(found: Mapping[str, float]) -> str:
     if "most" not in found:
         return ""
     joules = f"{_number(found['most'] * found['at_feed_j_mm'])} J, " if "at_feed_j_mm" in found else ""
-    return f"up to {joules}{found['most']:.3g} \u00d7 that at the feed"
+    return f"{joules}{found['most']:.3g} \u00d7 usual"
 
 
 def _shares(shares: Mapping[str, float]) -> str:
