@@ -37,6 +37,7 @@ from deltacam.program.atomic import write_whole
 from deltacam.program.outputs import Outputs, make_folder
 from deltacam.program.program import DrawingRef, Program
 from deltacam.report import html, listing
+from deltacam.robot.rapid import Rapids
 from deltacam.robot.reader import DEFAULT_ROBOT, load_robot
 from deltacam.robot.robot import Robot
 from deltacam.verification import verify as verification
@@ -294,7 +295,8 @@ def _where(found: Found) -> Finding:
 
 def _ordered(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Cut, ...]:
     parents = {contour.number: contour.parent for contour in part.contours}
-    return order.order(cuts, parents=parents, start=_to_sheet(how.robot.workspace.park, where))
+    start = _to_sheet(how.robot.workspace.park, where)
+    return order.order(cuts, parents=parents, start=start, cost=Rapids(how.robot, where)).cuts
 
 
 def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> setpoints.Setpoints:
