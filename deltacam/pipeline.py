@@ -16,7 +16,7 @@ import numpy as np
 from deltacam.cutting import kerf, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
 from deltacam.cutting.resume import resume
-from deltacam.cutting.ways import Search, Ways, ways
+from deltacam.cutting.ways import Ways, ways
 from deltacam.drawing.reader import read_drawing
 from deltacam.model import (
     EVERYTHING,
@@ -29,6 +29,7 @@ from deltacam.model import (
     Placement,
     Process,
     Report,
+    Search,
     Selection,
 )
 from deltacam.motion import setpoints

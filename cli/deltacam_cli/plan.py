@@ -37,6 +37,9 @@ def command(
     at: str | None,
     rotate: str | None,
     place: str | None,
+    order_time: str | None,
+    order_seed: int,
+    parts_together: bool,
     what_if: bool | None,
     from_contour: int | None,
     jobs: int | None,
@@ -59,7 +62,17 @@ def command(
     own = options.defaults()
     if from_contour is not None and frame:
         raise click.UsageError("--from-contour says what is cut, and --frame cuts nothing")
-    given = how(at=at, rotate=rotate, place=place, dry_run=dry_run, frame=frame, what_if=what_if)
+    given = how(
+        at=at,
+        rotate=rotate,
+        place=place,
+        order_time=order_time,
+        order_seed=order_seed,
+        parts_together=parts_together,
+        dry_run=dry_run,
+        frame=frame,
+        what_if=what_if,
+    )
     with ProgressLine() as progress:
         planned, outputs = plan_to_folder(
             drawing,

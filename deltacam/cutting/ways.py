@@ -18,7 +18,7 @@ from deltacam.cutting.leads.reach import Reach
 from deltacam.cutting.leads.waste import Waste
 from deltacam.cutting.order import Ordered, effort_for, order
 from deltacam.cutting.shaping import looped, repeated, tabbed
-from deltacam.model import Array, Contour, Cut, Finding, Placement, Process
+from deltacam.model import Array, Contour, Cut, Finding, Placement, Process, Search
 from deltacam.robot.rapid import Rapids
 
 if TYPE_CHECKING:
@@ -26,20 +26,6 @@ if TYPE_CHECKING:
 
 _WITHIN: Final = 0.1
 """How much less than estimated a rapid may take: what has to wait for heat waits so much longer."""
-
-
-class Search(NamedTuple):
-    """How the order is looked for.
-
-    Attributes:
-        time: about how long, s; None for what usually pays.
-        seed: of what is tried at random.
-        together: whether all contours of a part are cut before those of the next.
-    """
-
-    time: float | None = None
-    seed: int = 0
-    together: bool = False
 
 
 class Ways(NamedTuple):

@@ -98,3 +98,18 @@ class Block:
     contour: int | None = None
     layer: str = ""
     handles: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How the order of the cuts is looked for.
+
+    Attributes:
+        time: about how long, s; None for what usually pays.
+        seed: of what is tried at random; the same gives the same order.
+        together: whether all contours of a part are cut before those of the next.
+    """
+
+    time: float | None = None
+    seed: int = 0
+    together: bool = False
