@@ -62,6 +62,7 @@ class Cut:
         way: of the tool, from the pierce to where the next move begins: lead-in, cut, loops, tabs, overcut, lead-out;
             empty where it is the curve alone.
         feed: m/s; None is that of the process.
+        wait: at rest with the laser off before it begins, s.
     """
 
     contour: int
@@ -71,6 +72,7 @@ class Cut:
     operation: Operation = Operation.CUT
     way: tuple[Stretch, ...] = ()
     feed: float | None = None
+    wait: float = 0.0
 
     @property
     def where(self) -> str:

@@ -53,6 +53,7 @@ OF_POSITIONS: Final[tuple[Callable[[Evidence], Check], ...]] = (
 OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     contours.known_contours,
     contours.cut_once,
+    contours.resumed,
     path.deviation,
     path.deviation_between,
     path.uncut,
