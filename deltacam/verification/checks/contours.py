@@ -71,9 +71,11 @@ def closed(comparison: Comparison) -> Check:
 
 
 def _gap(evidence: Evidence, run: Run) -> float:
-    """How far the second half of a run stays from where the run starts, m."""
-    start, way = evidence.sheet[run.first], evidence.sheet[(run.first + run.end) // 2 : run.end + 1]
-    return float(shapely.distance(shapely.Point(start), shapely.LineString(np.concatenate([way, way[-1:]]))))
+    """How far the second half of a run stays from where the run comes to its contour, m."""
+    sheet, middle = evidence.sheet, (run.first + run.end) // 2
+    start = sheet[max(run.first - 1, run.begin) : run.first + 1]
+    start, way = (np.concatenate([line, line[-1:]]) for line in (start, sheet[middle : run.end + 1]))
+    return float(shapely.distance(shapely.LineString(start), shapely.LineString(way)))
 
 
 def holes_first(comparison: Comparison) -> Check:
