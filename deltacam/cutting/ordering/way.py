@@ -7,7 +7,8 @@ change places. The cuts of a stretch that is run the other way begin at the mirr
 
 from __future__ import annotations
 
-import numpy as np
+import math
+from itertools import pairwise
 
 from deltacam.cutting.ordering.problem import Lookup, Problem
 
@@ -27,7 +28,7 @@ class Way:
         made: the changes since they were last kept, as `undo` takes them.
     """
 
-    __slots__ = ("exact", "made", "mirror", "place", "position", "rows", "sequence", "_inner", "_outer", "_ruled")
+    __slots__ = ("_inner", "_outer", "_ruled", "exact", "made", "mirror", "place", "position", "rows", "sequence")
 
     def __init__(self, problem: Problem, lookup: Lookup, places: list[int]) -> None:
         rest = problem.count
@@ -57,7 +58,9 @@ class Way:
     def total(self) -> float:
         """The cost of all steps."""
         places = [self.place[cut] for cut in self.sequence]
-        return sum(self.rows[left][reached] for left, reached in zip(places, [*places[1:], places[0]], strict=True))
+        return math.fsum(
+            self.rows[left][reached] for left, reached in zip(places, [*places[1:], places[0]], strict=True)
+        )
 
     def turn(self, p: int, r: int) -> None:
         """Run the stretch from step p to step r the other way."""
@@ -135,6 +138,6 @@ class Way:
         rows, mirror = self.rows, self.mirror
         places = [self.place[cut] for cut in self.sequence[p:r]]
         more = 0.0
-        for left, reached in zip(places, places[1:], strict=False):
+        for left, reached in pairwise(places):
             more += rows[mirror[reached]][mirror[left]] - rows[left][reached]
         return more
