@@ -34,7 +34,7 @@ from deltacam.model.process import (
     StartRule,
     Tabs,
 )
-from deltacam.model.report import UNCHECKED, Check, Held, Report, Size
+from deltacam.model.report import UNCHECKED, Check, Held, KerfEffect, Report, Size
 
 __all__ = [
     "DEFAULT_JOINING",
@@ -58,6 +58,7 @@ __all__ = [
     "Heat",
     "Held",
     "IntArray",
+    "KerfEffect",
     "Layer",
     "Lead",
     "LeadShape",
