@@ -1,8 +1,8 @@
 """Leads of 500 random contours, planned and measured: whether the beam burns a part, and how fast the tool arrives.
 
 Nothing here asks the planner how it chose a lead. What the beam burns is the way of the tool at the setpoints, as wide
-as the kerf. How fast the contour can be passed where it begins comes from a flying lap: the same contour, gone around
-twice without a stop. Geometry leaves room where a lead of the least size that the robot's limits allow, without any
+as the kerf. How fast the contour can be passed where it begins comes from a flying lap: the tool has been on the
+same contour for a while. Geometry leaves room where a lead of the least size that the robot's limits allow, without any
 margin, fits at one of many places around the contour.
 """
 
@@ -42,6 +42,7 @@ REACHED: Final = 0.98
 _TICKS: Final = 3
 _PLACES: Final = 180
 _FINE: Final = 8  # places per tick
+_BEFORE: Final = 0.03  # m, before the start of a contour on a flying lap, and behind it
 
 
 class Drawn(NamedTuple):
@@ -59,7 +60,7 @@ class Begun:
         kind: of the contour.
         hole: whether it is one.
         lead: whether there is a lead-in.
-        share: the least part of the speed of the flying lap at the first ticks.
+        share: the speed at the first tick, or in the first ticks together, as a part of that of the flying lap.
         at_feed: the speed at the first tick as a part of the feed.
         room: whether a lead of the least size fits.
         why: in words, where the speed is not reached.
@@ -213,11 +214,12 @@ def begun(planned: pipeline.Planned, drawn: dict[int, str], parts: list[Any]) ->
     found = []
     for number, (row, lead) in first.items():
         contour = next(one for one in planned.drawing.contours if one.number == number)
-        along = np.concatenate([[0.0], np.cumsum(speed[row : row + _TICKS] / program.rate_hz)])[:-1]
-        allowed = np.interp(along, *laps[number])
-        share = float(np.min(speed[row : row + _TICKS] / np.minimum(allowed, process.feed)))
-        at_feed = float(speed[row]) / process.feed
-        room = share >= REACHED or _leaves_room(rings[number], contour, float(allowed[0]), planned, parts)
+        along = np.cumsum(np.concatenate([[0.0], speed[row : row + _TICKS]]) / program.rate_hz)
+        needed = np.interp(along, *laps[number])[1:] - np.interp(0.0, *laps[number])
+        # The first tick alone, and all of the first ticks together: a lap has its ticks at other places.
+        share = float(np.min((needed * program.rate_hz / np.arange(1, _TICKS + 1))[[0, -1]]))
+        at_feed, allowed = float(speed[row]) / process.feed, float(along[1] / needed[0])
+        room = share >= REACHED or _leaves_room(rings[number], contour, allowed, planned, parts)
         why = "" if share >= REACHED else _why(number, planned, lead, share)
         found.append(Begun(drawn[number], contour.is_hole, lead, share, at_feed, room, why))
     return found
@@ -232,12 +234,15 @@ def _ring(cuts: tuple[Cut, ...], number: int, place: Array) -> Curve:
 
 
 def _flying(rings: dict[int, Curve], planned: pipeline.Planned) -> dict[int, tuple[Array, Array]]:
-    """By contour, distances behind the start of its ring, m, and how fast the tool passes them on its second lap."""
+    """By contour, distances behind the start of its ring, m, and when the tool passes them where it comes flying, s."""
     program = planned.program
-    ways = []
+    ways, starts = [], dict[int, float]()
     for number, ring in rings.items():
-        once = curves.opened(ring)
-        lap = curves.chain([once, once, curves.part(once, 0.0, 0.5 * curves.length(once))])
+        once, length = curves.opened(ring), curves.length(ring)
+        before = min(1.5 * length, max(0.5 * length, _BEFORE))
+        twice = curves.chain([once, once, once])
+        lap = curves.part(twice, 2.0 * length - before, 2.0 * length + min(_BEFORE, 0.5 * length))
+        starts[number] = before
         ways.append(Cut(number, "", ("0",), ring, way=(Stretch(BlockKind.CUT, lap),)))
     moved = setpoints.plan_motion(
         ways,
@@ -253,10 +258,8 @@ def _flying(rings: dict[int, Curve], planned: pipeline.Planned) -> dict[int, tup
     found = {}
     for block in moved.blocks:
         if block.kind is BlockKind.CUT and block.contour is not None:
-            own = step[block.first : block.last + 1]
-            reach = np.cumsum(own) - own
-            start = reach[-1] * 0.4  # one of two and a half laps
-            found[block.contour] = (reach - start, own * program.rate_hz)
+            own = np.concatenate([[0.0], np.cumsum(step[block.first : block.last + 1])])
+            found[block.contour] = (own - starts[block.contour], np.arange(len(own)) / program.rate_hz)
     return found
 
 
@@ -318,7 +321,7 @@ def measure(index: int, seed: int) -> tuple[list[Begun], float, float, bool, str
         overcut=float(chance.choice([0.0, 0.3e-3, 1e-3])),
         pierce_time=0.05,
     )
-    title = f"sheet {index} ({name}, {1e3 * feed:.0f} mm/s, {lead})"
+    title = f"sheet {index} ({name}, {1e3 * feed:.0f} mm per s, {lead})"
     planned = pipeline.plan(title, data=content(lines), robot=robot, process=process, what_if=False, jobs=1)
     parts = finished(planned.drawing.contours)
     kinds = {one.number: lines[one.number - 1].kind for one in planned.drawing.contours}
@@ -380,7 +383,9 @@ def main() -> None:
     print("\nnot reached:")
     for one in sorted((one for one in found if one.why), key=lambda one: one.share):
         print(f"  {one.why}{'' if one.room else ', no room'} ({one.kind})")
-    print(f"\nburnt beyond the tolerances: {1e12 * area:.0f} um2; the tool came {1e6 * worst:.1f} um too near to a part")
+    print(
+        f"\nburnt beyond the tolerances: {1e12 * area:.0f} um2; the tool came {1e6 * worst:.1f} um too near to a part"
+    )
     print(f"verified: {'all' if not failed else failed}; {time.perf_counter() - start:.0f} s")
     if not chosen.no_cost:
         for count, seconds in cost((2000, 10000)):

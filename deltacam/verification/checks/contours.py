@@ -58,9 +58,13 @@ def closed(comparison: Comparison) -> Check:
 
 
 def _gap(evidence: Evidence, run: Run) -> float:
-    """How far the second half of a run stays from where the run starts, m."""
-    start, way = evidence.sheet[run.first], evidence.sheet[(run.first + run.end) // 2 : run.end + 1]
-    return float(shapely.distance(shapely.Point(start), shapely.LineString(np.concatenate([way, way[-1:]]))))
+    """How far the second half of a run stays from where the run starts, m.
+
+    The cut starts somewhere on the way to its first tick, where a lead-in comes before it.
+    """
+    start = evidence.sheet[[max(run.first - 1, run.begin), run.first]]
+    way = evidence.sheet[(run.first + run.end) // 2 : run.end + 1]
+    return float(shapely.distance(shapely.LineString(start), shapely.LineString(np.concatenate([way, way[-1:]]))))
 
 
 def holes_first(comparison: Comparison) -> Check:
