@@ -18,7 +18,7 @@ from deltacam.model.drawing import (
 )
 from deltacam.model.findings import Finding
 from deltacam.model.ledger import LedgerEntry, Outcome
-from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement, Stretch
+from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement, Search, Stretch
 from deltacam.model.process import (
     Corner,
     Gas,
@@ -73,6 +73,7 @@ __all__ = [
     "Provenance",
     "Report",
     "Rule",
+    "Search",
     "Selection",
     "Size",
     "Slower",

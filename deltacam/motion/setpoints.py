@@ -101,6 +101,7 @@ def _taped(
             if not part.is_tab:
                 pierce = 0 if holes and number == 0 else way.pierce
                 tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
+                tape.rest(BlockKind.RAPID, ticks=0 if number else _ticks(cut.wait, robot))
                 tape.rest(BlockKind.PIERCE, ticks=pierce, power=power, cut=cut)
                 tape.rest(BlockKind.RAPID, ticks=0 if pierce else apart)
             pace = _pace(robot, limits, (*curve.points[0], placement.z))
@@ -201,8 +202,13 @@ def _way(operation: Operation, robot: Robot, process: Process) -> _Way:
     if operation is Operation.ENGRAVE:
         feed, power = engraving(process)
         return _Way(working_limits(robot, process, feed), power, 0)
-    pierce = math.ceil(process.pierce_time * robot.controller.rate_hz - _ROUNDING)
+    pierce = _ticks(process.pierce_time, robot)
     return _Way(working_limits(robot, process, process.feed), process.power, pierce)
+
+
+def _ticks(time: float, robot: Robot) -> int:
+    """The fewest ticks that take so many seconds."""
+    return math.ceil(time * robot.controller.rate_hz - _ROUNDING)
 
 
 def _left_for_corners(tolerance: float, error: float) -> float:

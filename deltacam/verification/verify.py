@@ -23,6 +23,7 @@ CONTOUR_CHECKS: Final = (
     "drawing",
     "cuts of drawn contours only",
     "every contour cut once",
+    "begins at its contour",
     "deviation at ticks",
     "deviation between ticks",
     "uncut length",
@@ -74,6 +75,7 @@ def verify(
         checks += [check(evidence) for check in OF_POSITIONS]
         comparison = _compared(evidence, drawing, findings)
         checks += [check(comparison) for check in OF_CONTOURS if comparison]
+        findings += _not_cut_again(comparison)
         sizes = comparison.sizes if comparison else ()
         effects = _effects(comparison) if comparison else ()
     ledger = drawing.ledger if drawing else ()
@@ -85,6 +87,15 @@ def _effects(comparison: Comparison) -> tuple[KerfEffect, ...]:
     """What the kerf does to the contours of the drawing."""
     rings = [target.rings for target in comparison.targets]
     return kerf_effects(comparison.drawing.contours, rings, comparison.evidence.program.process.kerf)
+
+
+def _not_cut_again(comparison: Comparison | None) -> list[Finding]:
+    """What a program that goes on after a stop leaves out."""
+    left_out = [one.contour for one in comparison.targets if one not in comparison.due] if comparison else []
+    if not left_out:
+        return []
+    what = f"not checked: {len(left_out)} contours that this program says were cut before"
+    return [Finding(what, where=left_out[0].where, hint="look at the sheet before it runs", kind=UNCHECKED)]
 
 
 def _compared(evidence: Evidence, drawing: Drawing | None, findings: list[Finding]) -> Comparison | None:

@@ -49,7 +49,7 @@ def uncut(comparison: Comparison) -> Check:
     """
     process = comparison.evidence.program.process
     near = process.tolerance + process.chord_tolerance + ACCURACY
-    found = [(*_uncut(comparison.evidence, target, near), target.contour) for target in comparison.targets]
+    found = [(*_uncut(comparison.evidence, target, near), target.contour) for target in comparison.due]
     total = 1e3 * sum(left for left, _, _ in found)
     if not total:
         return Check("uncut length", True, 0.0, 0.0, "mm")
