@@ -96,18 +96,22 @@ def _taped(
         for hole in holes.get(index, ()):
             tape.travel(_in_machine(hole, placement).points[0], rapid, where=f"the way to contour {hole.contour}")
             tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=hole)
-        for number, part in enumerate(parts(cut)):
+        of_cut = tuple(parts(cut))
+        for number, part in enumerate(of_cut):
             curve = curves.transform(part.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
             if not part.is_tab:
                 pierce = 0 if holes and number == 0 else way.pierce
                 tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
                 tape.rest(BlockKind.RAPID, ticks=0 if number else _ticks(cut.wait, robot))
                 tape.rest(BlockKind.PIERCE, ticks=pierce, power=power, cut=cut)
-                tape.rest(BlockKind.RAPID, ticks=0 if pierce else apart)
+                tape.rest(BlockKind.RAPID, ticks=0 if pierce or number else apart)
             pace = _pace(robot, limits, (*curve.points[0], placement.z))
             drawn = Drawn(curve, part.stretch, part.speed, process.corner, deviation, pace, placement.z)
             tape.work(drawn, limits, power=power, cut=cut)
-            tape.rest(BlockKind.RAPID, ticks=apart)
+            if number < len(of_cut) - 1:
+                tape.rest(BlockKind.TAB, ticks=apart, cut=cut)
+            else:
+                tape.rest(BlockKind.RAPID, ticks=apart)
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
     return tape

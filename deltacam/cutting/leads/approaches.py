@@ -54,8 +54,8 @@ SMALLER: Final = (
 )
 """The sizes that are tried, as parts of what a lead should have: of its lengths, and of how far its arc turns."""
 
-CENTRE: Final = (1.0, 0.8, 0.6)
-"""The sizes of half circles from the middle of a hole, likewise."""
+CENTRE: Final = (1.0, 1.3, 1.5, 0.8, 0.6)
+"""The diameters of half circles in a hole, as parts of its radius: the first begins in the middle."""
 
 PLACES: Final = 8
 """Places per cut that are tried where the rule leaves a choice."""
@@ -181,9 +181,10 @@ def begun(cut: Cut, approach: Approach, *, process: Process, tick: float) -> Cut
 
 
 def _overcut(process: Process, cut: Cut, tick: float) -> float:
-    """How far the way goes beyond the start of a cut, m: the laser goes off at a tick."""
-    if process.overcut == 0.0:
-        return 0.0
+    """How far the way goes beyond the start of a cut, m: the laser goes off at a tick.
+
+    Also where no overcut is asked for: leads leave the contour on a blend each, and these must not leave a bridge.
+    """
     return min(process.overcut + (cut.feed or process.feed) * tick, curves.length(cut.curve))
 
 

@@ -17,6 +17,7 @@ _FEW: Final = 4
 _MANY: Final = 3000  # cuts, from which on fewer places are tried
 _CORNER: Final = np.radians(15.0)
 _BETTER: Final = 1.6  # the acceleration in the best direction over that in the worst, at most
+_AROUND: Final = 1.2  # the same along a bend, which runs through many directions
 
 
 class Spots(NamedTuple):
@@ -50,7 +51,7 @@ class Spots(NamedTuple):
         """
         acceleration = _BETTER * able.acceleration
         bend = np.maximum(np.abs(self.bend), 1e-9)
-        on_bend = np.minimum(np.sqrt(acceleration / bend), np.cbrt(_BETTER * able.jerk / bend**2))
+        on_bend = np.minimum(np.sqrt(_AROUND * able.acceleration / bend), np.cbrt(_AROUND * able.jerk / bend**2))
         rise = 1.0 / np.maximum(np.cos(0.5 * np.abs(self.turn)), 1e-3) - 1.0
         corner = acceleration * deviation / np.maximum(rise, 1e-6)
         before_corner = np.sqrt(corner + 2.0 * acceleration * self.corner)

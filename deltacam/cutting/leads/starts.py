@@ -30,7 +30,7 @@ def starts(curve: Curve, rule: StartRule, *, count: int, rounding: float) -> tup
         if len(corners):
             return corners, np.zeros(len(corners))
     if rule == "best":
-        return _spread(curve, length, count)
+        return _spread(length, count)
     straight = np.where(curve.bulges == 0.0, length, 0.0)
     longest = int(np.argmax(straight if straight.any() else length))
     return np.array([longest]), 0.5 * length[[longest]]
@@ -46,7 +46,7 @@ def _corners(curve: Curve, length: Array, rounding: float) -> IntArray:
     return np.flatnonzero((sharp | behind) & (length > 2.0 * rounding))
 
 
-def _spread(curve: Curve, length: Array, count: int) -> tuple[IntArray, Array]:
+def _spread(length: Array, count: int) -> tuple[IntArray, Array]:
     """Places around the cut, each on the longest line or arc of its share of the way, as far from its ends as it can.
 
     Near the end of a line there is a corner, or a bend, that leaves no room for the blend with a lead.
