@@ -53,7 +53,9 @@ def keeps(one: Problem, cuts: list[int]) -> bool:
     """Whether every cut is there once, stages follow each other, parts stay together and the rule is kept."""
     position = {cut: at for at, cut in enumerate(cuts)}
     stages, parts = one.stage[cuts].tolist(), one.part[cuts].tolist()
-    blocks = [pair for at, pair in enumerate(zip(stages, parts, strict=True)) if at == 0 or pair != last(stages, parts, at)]
+    blocks = [
+        pair for at, pair in enumerate(zip(stages, parts, strict=True)) if at == 0 or pair != last(stages, parts, at)
+    ]
     return (
         sorted(cuts) == list(range(one.count))
         and stages == sorted(stages)
