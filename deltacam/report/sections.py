@@ -10,7 +10,8 @@ import numpy as np
 
 from deltacam.model import Check, Drawing, LedgerEntry, Mode, Operation, Report, Size
 from deltacam.program.program import Program
-from deltacam.report.picture import shown, tool_speeds
+from deltacam.report.escaping import shown
+from deltacam.report.picture import tool_speeds
 from deltacam.report.tables import table
 from deltacam.units import to_mm, to_um
 from deltacam.verification.checks.measure import DIFFERENCES

@@ -13,12 +13,13 @@ from shapely import MultiLineString, Polygon, distance, points
 
 from deltacam.model import Drawing, Mode
 from deltacam.program.program import Program
+from deltacam.report.bands import RAPID, bands
 from deltacam.report.motion import motion_of
 from deltacam.report.motion_figure import deviation_figure, motion_figure
 from deltacam.report.palette import Ink, css, dark_rules
 from deltacam.report.payload import payload, to_script
-from deltacam.report.picture import RAPID, View, bands
 from deltacam.report.samples import Sampling
+from deltacam.report.view import View
 from deltacam.report.workspace_figure import workspace_figure
 from deltacam.verification.evidence import gather
 from tests.bench import Bench
