@@ -95,61 +95,6 @@ class Looks:
             left += width + 14.0
 
 
-def marked(evidence: Evidence, marks: Marks, view: View) -> str:
-    """The ends of tabs, the arrows, a dot where each cut begins, and its place in the order where there is room."""
-    pixel, parts = 1.0 / view.per_metre, []
-    for tick, turn in zip(marks.tabs.tolist(), np.degrees(headings(evidence.sheet, marks.tabs)), strict=True):
-        place = view.place(evidence.sheet[tick], -turn)
-        parts.append(f'<path class="tab" d="M0-6v12" stroke="var(--tab)" stroke-width="2" {place}/>')
-    arrows = marks.arrows
-    for at in np.flatnonzero(arrows.scale >= pixel).tolist():
-        place = view.place(arrows.points[at], -float(np.degrees(arrows.heading[at])))
-        parts.append(f'<path class="arrow" d="M6 0L-5 4V-4z" fill="var(--ink)" stroke="var(--paper)" {place}/>')
-    for number, tick in enumerate(marks.starts.tolist(), start=1):
-        x, y = view.pixel(evidence.sheet[tick])
-        name = f"<title>cut {number}: {shown(evidence.place(tick))}</title>"
-        parts.append(f'<circle class="start" cx="{x:.2f}" cy="{y:.2f}" r="3" fill="var(--ink)">{name}</circle>')
-    numbers = marks.numbers
-    for at in np.flatnonzero(numbers.scale >= pixel).tolist():
-        (x, y), (right, up) = view.pixel(numbers.points[at]), SIDES[numbers.side[at]]
-        anchor = "" if right > 0 else ' text-anchor="end"'
-        place = f'x="{x + 4.0 * right:.2f}" y="{y - 4.0 * up + (0 if up > 0 else 9):.2f}"{anchor}'
-        parts.append(f'<text class="number" {place}>{numbers.text[at]}</text>')
-    return "".join(parts)
-
-
-@dataclass(frozen=True, slots=True)
-class Looks:
-    """How lines and marks look, as a row of the legend.
-
-    Attributes:
-        names: of the bands that are there.
-        tabs: whether there are any.
-        arrows: likewise.
-    """
-
-    names: Mapping[int, str] = field(default_factory=dict)
-    tabs: bool = False
-    arrows: bool = False
-
-    @property
-    def height(self) -> float:
-        """Of all that is under the picture, pixels."""
-        return _WORDS + (_ROW if self.names else 0.0)
-
-    def drawn(self, left: float, top: float) -> str:
-        """The row, each look with its name."""
-        found = [(_LINES[band].format(0.8 * STROKES[band].width), name) for band, name in self.names.items()]
-        found += [(_TAB, "tab")] if self.tabs else []
-        found += [(_ARROW, "direction")] if self.arrows else []
-        parts = []
-        for look, name in found:
-            parts.append(f'<g class="looks" transform="translate({left:.0f} {top:.0f})">{look}')
-            parts.append(f'<text class="look" x="36" y="4.5">{name}</text></g>')
-            left += 50.0 + 8.7 * len(name)
-        return "".join(parts)
-
-
 def footer(view: View, step: float, colours: int, looks: Looks) -> str:
     """The size, a scale bar, and what the colours and lines stand for."""
     power = 10.0 ** math.floor(math.log10(150.0 / view.per_metre))

@@ -122,6 +122,7 @@ def _paths(xy: Array, band: IntArray, colour: IntArray, view: View) -> str:
     """
     subject = np.isin(band, (SUBJECT, BESIDE, TWICE))
     usual = float(np.median(colour[subject])) if subject.any() else 0.0
+    colour = np.where(subject, colour, 0)
     first, (kind,) = stretches(xy, band, [most_unusual(colour, usual)], reach=view.error * 3.0, most=_MAX_RUNS)
     lines = [xy[start : end + 1] for start, end in zip(first, np.append(first[1:], len(band)), strict=True)]
     of_line = list(zip(lines, band[first].tolist(), kind.tolist(), strict=True))
