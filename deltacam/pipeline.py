@@ -15,6 +15,7 @@ import numpy as np
 
 from deltacam.cutting import kerf, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
+from deltacam.cutting.resume import resume
 from deltacam.cutting.ways import Ways, ways
 from deltacam.drawing.reader import read_drawing
 from deltacam.model import (
@@ -28,6 +29,7 @@ from deltacam.model import (
     Placement,
     Process,
     Report,
+    Search,
     Selection,
 )
 from deltacam.motion import setpoints
@@ -81,6 +83,8 @@ def plan(
     rotation: float = 0.0,
     place: By | None = None,
     mode: Mode = Mode.CUT,
+    from_contour: int | None = None,
+    search: Search = Search(),  # noqa: B008 - it cannot be changed
     jobs: int | None = None,
     what_if: bool | None = None,
     progress: Progress = _silent,
@@ -99,6 +103,8 @@ def plan(
         rotation: of the drawing about that centre, rad, counter-clockwise.
         place: what the place and the rotation are chosen by, as `best_places` finds them; None takes those given.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
+        from_contour: the number of the contour to go on with after a stop; what comes before it is not cut again.
+        search: how long the order of the cuts is looked for, and what must stay together.
         jobs: how many processes plan the motion, >= 1; None takes as many as pay. The program is the same for any.
         what_if: whether to find out how long the cuts would take without each limit; None does where that is quick.
         progress: is told what is going on.
@@ -114,7 +120,7 @@ def plan(
     progress("read", 0, 1)
     selection = replace(selection, rules=process.rules, open=process.open)
     part = read_drawing(drawing, data=data, unit=unit, default_unit=default_unit, selection=selection)
-    how = _How(robot, process, at, rotation, mode, jobs, what_if, progress)
+    how = _How(robot, process, at, rotation, mode, jobs, what_if, progress, from_contour, search)
     found = None if place is None else _placed(part, how, place)
     if found is not None:
         how = how._replace(at=found.best[0].spot.at, rotation=found.best[0].spot.rotation)
@@ -222,6 +228,8 @@ class _How(NamedTuple):
     jobs: int | None
     what_if: bool | None
     progress: Progress
+    from_contour: int | None = None
+    search: Search = Search()
 
 
 def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple[Finding, ...]]:
@@ -251,6 +259,7 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
         q=moves.q,
         power=moves.power,
         block=moves.block,
+        from_contour=how.from_contour,
     )
     return program, moves.held, (*shifted.findings, *findings)
 
@@ -295,7 +304,15 @@ def _where(found: Found) -> Finding:
 
 
 def _ways(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Ways:
-    return ways(cuts, part.contours, process=how.process, robot=how.robot, placement=where)
+    return ways(
+        cuts,
+        part.contours,
+        process=how.process,
+        robot=how.robot,
+        placement=where,
+        search=how.search,
+        progress=lambda done, total: how.progress("order", done, total),
+    )
 
 
 def _cutting(
@@ -303,8 +320,9 @@ def _cutting(
 ) -> tuple[Setpoints, tuple[Finding, ...]]:
     how.progress("order", 0, 1)
     found = _ways(part, cuts, how, where)
+    left, left_out = (found.cuts, ()) if how.from_contour is None else resume(found.cuts, how.from_contour)
     moves = setpoints.plan_motion(
-        found.cuts,
+        left,
         robot=how.robot,
         process=how.process,
         placement=where,
@@ -314,7 +332,7 @@ def _cutting(
         what_if=how.what_if,
         progress=lambda done, total: how.progress("motion", done, total),
     )
-    return moves, found.findings
+    return moves, (*found.findings, *left_out)
 
 
 def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Setpoints, tuple[Finding, ...]]:

@@ -1,47 +1,110 @@
-"""The order of the cuts: what lies inside a contour before the contour, and little travel in between.
+"""The order of the cuts: what lies inside a contour before the contour, and little time on the way in between.
 
 A part that has been cut out may drop or tilt, so nothing on it can be engraved or cut afterwards: the whole sheet is
-engraved first, then the open lines are cut, then the contours, inner before outer. Within that rule the order comes
-from the nearest neighbour, improved as `improve` says.
+engraved first, then the open lines are cut, then the contours, inner before outer. What is free is chosen by `search`:
+the sequence, where a cut begins, and which way open ones are run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from deltacam.cutting.beginnings import Beginnings, Place
-from deltacam.cutting.improve import Tour, improve
-from deltacam.cutting.neighbour import nearest_neighbour
+from deltacam.cutting.ordering.choice import Choice, Spot
+from deltacam.cutting.ordering.places import best_places
+from deltacam.cutting.ordering.problem import Cost, Problem, distance
+from deltacam.cutting.ordering.search import search
 from deltacam.cutting.precedence import Precedence
-from deltacam.model import Cut, IntArray, Operation
+from deltacam.model import Cut, Heat, IntArray, Operation
 
-_ROUNDS: Final = 20
-_WORTH: Final = 2e-4  # of the travel; a round that saves less is not worth another one
-_STAGES: Final = 3
+_FINER: Final = 6  # rounds in which the places of a cut that may begin anywhere come nearer to each other
+_TRY_TIME: Final = 1e-3  # s, of one try, and of looking at one cut before, on the machine of benchmarks/README.md
+_TRIES_PER_CUT: Final = 4
 
 
-def order(cuts: Sequence[Cut], *, parents: Mapping[int, int | None], start: tuple[float, float]) -> tuple[Cut, ...]:
+@dataclass(frozen=True, slots=True, eq=False)
+class Ordered:
+    """Cuts in the order in which they are made.
+
+    Attributes:
+        cuts: each begun at its place, where that was free to choose; else as it was given.
+        index: of each among the cuts that were given.
+        place: of each in its list of places; None where it had none.
+        time: of all ways between, as they were costed, waiting included, s.
+        wait: s, for how long the tool waits before each, because heat has to spread; 0 without such a rule.
+    """
+
+    cuts: tuple[Cut, ...]
+    index: tuple[int, ...]
+    place: tuple[int | None, ...]
+    time: float
+    wait: tuple[float, ...]
+
+
+def default_effort(contours: int) -> int:
+    """How many tries are made where nobody says."""
+    return _TRIES_PER_CUT * contours
+
+
+def effort_for(seconds: float, contours: int) -> int:
+    """How many tries take about so many ``seconds`` for a number of contours; the machine decides how exactly."""
+    return max(0, round(seconds / _TRY_TIME) - contours)
+
+
+def order(
+    cuts: Sequence[Cut],
+    *,
+    parents: Mapping[int, int | None],
+    start: tuple[float, float],
+    cost: Cost = distance,
+    places: Sequence[Sequence[Spot] | None] | None = None,
+    seed: int = 0,
+    effort: int | None = None,
+    together: bool = False,
+    heat: Heat | None = None,
+    progress: Callable[[int, int], None] = lambda _done, _total: None,
+) -> Ordered:
     """Order the cuts and choose where each begins, and which way open ones are run.
 
     Args:
         cuts: in the sheet frame.
         parents: for the number of each contour, the number of the contour around it.
         start: where the tool is before the first cut and after the last, sheet frame, m.
+        cost: of the ways between, s.
+        places: for each cut those where it may begin; None for a cut that may begin anywhere, if it is open at either
+            end. All are of that kind where None.
+        seed: of the search. The same seed and effort give the same order.
+        effort: how often the search tries to get out of a dead end; more is better and takes longer.
+        together: whether a part's contours stay together, that is, those of one outermost contour.
+        heat: a rule for near cuts; what is nearer than its distance waits until its time has passed.
+        progress: is told how many tries are done, and of how many.
 
     Returns:
-        the same cuts: engraving, then open cuts, then closed ones, where every contour comes after all that lies inside
-        it. Each begins at its point nearest to where the one before it ended; an open one at the nearer end.
+        all cuts: engraving, then open cuts, then closed ones, where every contour comes after all that lies inside it.
     """
-    ordered: tuple[Cut, ...] = ()
-    place = start
-    for stage in range(_STAGES):
-        ordered += _order([cut for cut in cuts if _stage(cut) == stage], parents, place, start)
-        place = _end(ordered[-1]) if ordered else start
-    return ordered
+    if not cuts:
+        return Ordered((), (), (), 0.0, ())
+    kinds = [_stage(cut) for cut in cuts]
+    stages = [sorted(set(kinds)).index(kind) for kind in kinds]
+    parts = [_outermost(cut.contour, parents) if together else 0 for cut in cuts]
+    choice = Choice.of(cuts, places)
+    rule = Precedence.between(cuts, parents, stages)
+
+    def problem() -> Problem:
+        begins, ends = np.vstack([choice.begins, start]), np.vstack([choice.ends, start])
+        first = np.append(choice.first, len(begins))
+        return Problem(begins, ends, first, rule, np.array([*stages, max(stages)]), np.array([*parts, -1]), cost, heat)
+
+    effort = default_effort(len(cuts)) if effort is None else effort
+    found = np.array(search(problem(), seed=seed, tries=effort, progress=progress))
+    sequence = choice.owner[found].tolist()
+    for _ in range(_FINER if choice.free.any() else 0):
+        choice = choice.finer(found)
+        found = np.array(best_places(problem(), sequence))
+    return _ordered(choice, problem(), found)
 
 
 def _stage(cut: Cut) -> int:
@@ -51,56 +114,24 @@ def _stage(cut: Cut) -> int:
     return 2 if cut.curve.closed else 1
 
 
-def _order(
-    cuts: Sequence[Cut], parents: Mapping[int, int | None], start: tuple[float, float], home: tuple[float, float]
-) -> tuple[Cut, ...]:
-    """The cuts of one stage in order, from ``start`` and then on to ``home``."""
-    if not cuts:
-        return ()
-    rule, beginnings = Precedence.between(cuts, parents), Beginnings(cuts)
-    best = _Walk.along(beginnings, nearest_neighbour(beginnings, rule, start), start, home)
-    moved = None
-    for _ in range(_ROUNDS):
-        tour = best.tour()
-        walk = _Walk.along(beginnings, improve(tour, rule, moved), start, home)
-        saved, everywhere = best.travel - walk.travel, moved is None
-        if saved > 0.0:
-            best, moved = walk, walk.tour().differs(tour)
-        if saved <= _WORTH * best.travel:
-            if everywhere:
-                break
-            moved = None
-    return tuple(
-        beginnings.begun(index, place) for index, place in zip(best.sequence.tolist(), best.places, strict=True)
+def _outermost(contour: int, parents: Mapping[int, int | None]) -> int:
+    around = parents.get(contour)
+    while around is not None:
+        contour, around = around, parents.get(around)
+    return contour
+
+
+def _ordered(choice: Choice, problem: Problem, found: IntArray) -> Ordered:
+    """What is handed out for the places found."""
+    rest = len(problem.begins) - 1
+    ways = problem.ways(np.array([rest, *found]), np.array([*found, rest]))
+    moving = problem.cost(problem.ends[[rest, *found]], problem.begins[[*found, rest]])
+    listed, owner = choice.listed, choice.owner[found]
+    inside = found - choice.first[owner]
+    return Ordered(
+        tuple(choice.begun(place) for place in found.tolist()),
+        tuple(owner.tolist()),
+        tuple(at if listed[cut] else None for cut, at in zip(owner.tolist(), inside.tolist(), strict=True)),
+        float(ways.sum()),
+        tuple(np.maximum(ways - moving, 0.0)[:-1].tolist()),
     )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Walk:
-    """Cuts in ``sequence``, each begun at that of its ``places`` that is nearest to the end of the one before."""
-
-    sequence: IntArray
-    places: list[Place]
-    start: tuple[float, float]
-    home: tuple[float, float]
-
-    @classmethod
-    def along(
-        cls, beginnings: Beginnings, sequence: IntArray, start: tuple[float, float], home: tuple[float, float]
-    ) -> _Walk:
-        return cls(sequence, beginnings.walk(sequence, start), start, home)
-
-    def tour(self) -> Tour:
-        back = np.argsort(self.sequence)
-        begins = np.array([place.begin for place in self.places])[back]
-        ends = np.array([place.end for place in self.places])[back]
-        return Tour(self.sequence.copy(), begins, ends, np.array(self.start), np.array(self.home))
-
-    @property
-    def travel(self) -> float:
-        return self.tour().travel()
-
-
-def _end(cut: Cut) -> tuple[float, float]:
-    x, y = cut.curve.ends[-1]
-    return float(x), float(y)

@@ -12,27 +12,42 @@ from deltacam.model import Cut, IntArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Precedence:
-    """The rule that what lies directly inside a contour is cut before it, by index of N cuts.
+    """The rule that what lies inside a contour is cut before it, by index of N cuts.
 
     Attributes:
-        waiting: how many cuts lie directly inside the contour of each, (N,).
-        around: the cuts of the contour directly around each, (N + 1, K), with N where there are fewer; the last row,
-            that of nobody, is N alone.
+        waiting: how many cuts come directly before each, (N,).
+        around: the cuts that each comes directly before, (N + 1, K), with N where there are fewer; the last row, that
+            of nobody, is N alone.
     """
 
     waiting: IntArray
     around: IntArray
 
     @classmethod
-    def between(cls, cuts: Sequence[Cut], parents: Mapping[int, int | None]) -> Precedence:
-        """The rule among the cuts, given the number of the contour around each contour."""
-        by_contour: dict[int | None, list[int]] = {}
-        for index, cut in enumerate(cuts):
-            by_contour.setdefault(cut.contour, []).append(index)
-        outer = [by_contour.get(parents[cut.contour] or None, []) for cut in cuts]
+    def between(
+        cls, cuts: Sequence[Cut], parents: Mapping[int, int | None], stages: Sequence[int] | None = None
+    ) -> Precedence:
+        """The rule among the cuts, given the number of the contour around each contour.
+
+        Args:
+            cuts: of any contours; some have none, and some several.
+            parents: by the number of each contour that has a cut or lies around one.
+            stages: of each cut; the rule is only within a stage, and reaches past contours of others. All are of one
+                stage where None.
+        """
+        stages = [0] * len(cuts) if stages is None else stages
+        by_contour: dict[tuple[int, int], list[int]] = {}
+        for index, (cut, stage) in enumerate(zip(cuts, stages, strict=True)):
+            by_contour.setdefault((cut.contour, stage), []).append(index)
+        outer = []
+        for cut, stage in zip(cuts, stages, strict=True):
+            around = parents[cut.contour]
+            while around is not None and (around, stage) not in by_contour:
+                around = parents.get(around)
+            outer.append([] if around is None else by_contour[around, stage])
         widest = max(map(len, outer), default=0)
-        around = np.full((len(cuts) + 1, max(widest, 1)), len(cuts), dtype=np.int64)
+        table = np.full((len(cuts) + 1, max(widest, 1)), len(cuts), dtype=np.int64)
         for index, found in enumerate(outer):
-            around[index, : len(found)] = found
-        waiting = np.bincount(around[:-1].ravel(), minlength=len(cuts) + 1)[:-1]
-        return cls(waiting, around)
+            table[index, : len(found)] = found
+        waiting = np.bincount(table[:-1].ravel(), minlength=len(cuts) + 1)[:-1]
+        return cls(waiting, table)

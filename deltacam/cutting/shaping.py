@@ -17,11 +17,12 @@ from deltacam.cutting.leads.waste import Waste
 from deltacam.cutting.loops import with_loops
 from deltacam.cutting.tabs import with_tabs
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, BlockKind, Contour, Curve, Cut, Finding, Process, Stretch
+from deltacam.model import Array, BlockKind, Contour, Curve, Cut, Finding, Operation, Process, Stretch
 
 BLENDED: Final = 0.4
 """Part of the tolerance that a blend between a lead or a loop and the cut is taken to have."""
 
+_ENDS: Final = frozenset({BlockKind.LEAD_IN, BlockKind.OVERCUT, BlockKind.LEAD_OUT})
 _FLATTENING: Final = 1e-5  # m
 _MOST_FINDINGS: Final = 5
 
@@ -87,6 +88,24 @@ def tabbed(cuts: Sequence[Cut], contours: Sequence[Contour], *, process: Process
         done.append(replace(cut, way=found.way))
         findings += found.findings
     return tuple(done), _few(findings)
+
+
+def repeated(cuts: Sequence[Cut], *, process: Process) -> tuple[Cut, ...]:
+    """The cuts run as often as the process says: round and round, or to and fro where they are open."""
+    if process.passes == 1:
+        return tuple(cuts)
+    return tuple(_repeated(cut, process.passes) if cut.operation is Operation.CUT else cut for cut in cuts)
+
+
+def _repeated(cut: Cut, passes: int) -> Cut:
+    if not cut.curve.closed:
+        back = curves.reverse(cut.curve)
+        turns = (back if number % 2 else cut.curve for number in range(passes))
+        return replace(cut, way=tuple(Stretch(BlockKind.CUT, curve) for curve in turns))
+    way = way_of(cut)
+    around = [index for index, stretch in enumerate(way) if stretch.kind not in _ENDS]
+    first, end = around[0], around[-1] + 1
+    return replace(cut, way=(*way[:first], *(way[first:end] * passes), *way[end:]))
 
 
 def way_of(cut: Cut) -> tuple[Stretch, ...]:

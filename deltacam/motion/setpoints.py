@@ -11,7 +11,7 @@ import numpy as np
 
 from deltacam.errors import InfeasibleError, ProcessError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, BlockKind, Cut, Mode, Operation, Placement, Process
+from deltacam.model import Array, BlockKind, Curve, Cut, Mode, Operation, Placement, Process
 from deltacam.motion.corners import Pace
 from deltacam.motion.parts import parts
 from deltacam.motion.power import powers
@@ -88,16 +88,22 @@ def _taped(
     apart = 0 if robot.controller.interpolation == "linear" else 1
     tape = Tape(robot, np.array(robot.workspace.park), placement.z)
     tape.rest(BlockKind.RAPID, ticks=1)
-    for cut in cuts:
+    holes = _first_pierces(cuts) if process.pre_pierce else {}
+    for index, cut in enumerate(cuts):
         way = ways[cut.operation]
         limits = way.limits if cut.feed is None else working_limits(robot, process, cut.feed)
         power = way.power if mode is Mode.CUT else 0.0
-        for part in parts(cut):
+        for hole in holes.get(index, ()):
+            tape.travel(_in_machine(hole, placement).points[0], rapid, where=f"the way to contour {hole.contour}")
+            tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=hole)
+        for number, part in enumerate(parts(cut)):
             curve = curves.transform(part.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
             if not part.is_tab:
+                pierce = 0 if holes and number == 0 else way.pierce
                 tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
-                tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
-                tape.rest(BlockKind.RAPID, ticks=0 if way.pierce else apart)
+                tape.rest(BlockKind.RAPID, ticks=0 if number else _ticks(cut.wait, robot))
+                tape.rest(BlockKind.PIERCE, ticks=pierce, power=power, cut=cut)
+                tape.rest(BlockKind.RAPID, ticks=0 if pierce else apart)
             pace = _pace(robot, limits, (*curve.points[0], placement.z))
             drawn = Drawn(curve, part.stretch, part.speed, process.corner, deviation, pace, placement.z)
             tape.work(drawn, limits, power=power, cut=cut)
@@ -105,6 +111,18 @@ def _taped(
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
     return tape
+
+
+def _first_pierces(cuts: Sequence[Cut]) -> dict[int, list[Cut]]:
+    """All that is pierced before the first cut, by the index of that cut, which follows what is engraved."""
+    cutting = [index for index, cut in enumerate(cuts) if cut.operation is Operation.CUT]
+    return {cutting[0]: [cuts[index] for index in cutting]} if cutting else {}
+
+
+def _in_machine(cut: Cut, placement: Placement) -> Curve:
+    """The first stretch of a cut in the machine frame."""
+    curve = cut.way[0].curve if cut.way else cut.curve
+    return curves.transform(curve, rotation=placement.rotation, shift=(placement.x, placement.y))
 
 
 def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Placement) -> Setpoints:
@@ -184,8 +202,13 @@ def _way(operation: Operation, robot: Robot, process: Process) -> _Way:
     if operation is Operation.ENGRAVE:
         feed, power = engraving(process)
         return _Way(working_limits(robot, process, feed), power, 0)
-    pierce = math.ceil(process.pierce_time * robot.controller.rate_hz - _ROUNDING)
+    pierce = _ticks(process.pierce_time, robot)
     return _Way(working_limits(robot, process, process.feed), process.power, pierce)
+
+
+def _ticks(time: float, robot: Robot) -> int:
+    """The fewest ticks that take so many seconds."""
+    return math.ceil(time * robot.controller.rate_hz - _ROUNDING)
 
 
 def _left_for_corners(tolerance: float, error: float) -> float:

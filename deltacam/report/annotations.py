@@ -11,7 +11,7 @@ import numpy as np
 
 from deltacam.report.bands import BESIDE, DARK, ENGRAVED, RAPID, STROKES, SUBJECT, TWICE
 from deltacam.report.escaping import shown
-from deltacam.report.marks import SIDES, Marks, headings
+from deltacam.report.marks import MANY, SIDES, Marks, headings
 from deltacam.report.view import MARGIN, WIDTH, View
 from deltacam.units import to_mm
 from deltacam.verification.evidence import Evidence
@@ -34,9 +34,10 @@ _ARROW: Final = '<path d="M21 0L10 4V-4z" fill="var(--ink)"/>'
 def marked(evidence: Evidence, marks: Marks, view: View) -> str:
     """The ends of tabs, the arrows, a dot where each cut begins, and its place in the order where there is room."""
     pixel, parts = 1.0 / view.per_metre, []
+    half, radius = (4.5, 2.4) if len(marks.starts) >= MANY else (6.0, 3.0)
     for tick, turn in zip(marks.tabs.tolist(), np.degrees(headings(evidence.sheet, marks.tabs)), strict=True):
         place = view.place(evidence.sheet[tick], -turn)
-        parts.append(f'<path class="tab" d="M0-6v12" stroke="var(--tab)" stroke-width="2" {place}/>')
+        parts.append(f'<path class="tab" d="M0-{half:g}v{2 * half:g}" stroke="var(--tab)" stroke-width="2" {place}/>')
     arrows = marks.arrows
     for at in np.flatnonzero(arrows.scale >= pixel).tolist():
         place = view.place(arrows.points[at], -float(np.degrees(arrows.heading[at])))
@@ -44,7 +45,9 @@ def marked(evidence: Evidence, marks: Marks, view: View) -> str:
     for number, tick in enumerate(marks.starts.tolist(), start=1):
         x, y = view.pixel(evidence.sheet[tick])
         name = f"<title>cut {number}: {shown(evidence.place(tick))}</title>"
-        parts.append(f'<circle class="start" cx="{x:.2f}" cy="{y:.2f}" r="3" fill="var(--ink)">{name}</circle>')
+        parts.append(
+            f'<circle class="start" cx="{x:.2f}" cy="{y:.2f}" r="{radius:g}" fill="var(--ink)">{name}</circle>'
+        )
     numbers = marks.numbers
     for at in np.flatnonzero(numbers.scale >= pixel).tolist():
         (x, y), (right, up) = view.pixel(numbers.points[at]), SIDES[numbers.side[at]]

@@ -82,10 +82,10 @@ def by_energy(energy: Array, usual_j_mm: float) -> Colouring:
     inks = [palette.BINDING[-1], *palette.energies(_USUAL - 1, len(_ENERGIES) - _USUAL + 1)]
     unit = f"1 is {usual_j_mm:.3g} J/mm" if usual_j_mm else "1 is that at the feed"
     found = most_unusual(np.where(known, colour, _USUAL), float(_USUAL))
-    none = largest(np.where(known, 0, 1))
+    some = largest(known.astype(np.int64))
 
     def choose(first: IntArray) -> IntArray:
-        return np.where(none(first) == 1, 0, found(first))
+        return np.where(some(first) == 1, found(first), 0)
 
     return Colouring("Energy", f"energy per mm up to, {unit}", inks, labels, choose)
 

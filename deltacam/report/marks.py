@@ -20,6 +20,9 @@ from deltacam.verification.runs import Run
 SIDES: Final = {"top right": (1, 1), "bottom right": (1, -1), "top left": (-1, 1), "bottom left": (-1, -1)}
 """Where a number may stand beside its dot."""
 
+MANY: Final = 60
+"""Cuts from which on marks are smaller."""
+
 _MOST_NUMBERS: Final = 1000
 _MOST_ARROWS: Final = 1500
 _COARSEST: Final = 250.0  # pixels of the longer side of the smallest picture
@@ -143,13 +146,13 @@ def _arrows(evidence: Evidence, runs: Sequence[Run], crowd: Crowd, unit: float) 
     ways = [_way(evidence, run) for run in runs]
     places = [(least, *one) for way in ways for least, *one in _places(*way, unit)]
     places.sort(key=lambda place: place[0])
-    found = []
+    found: list[tuple[float, float, float, float]] = []
     for least, step, heading in places[:_MOST_ARROWS]:
         point = (evidence.sheet[step] + evidence.sheet[step + 1]) / 2.0
         _, zoom = crowd.free(point, np.zeros((1, 2)), np.full(2, _ARROW), least)
         if zoom < NEVER:
             crowd.add(point, np.zeros(2), np.full(2, _ARROW), zoom)
-            found.append((*point, heading, unit / zoom))
+            found.append((float(point[0]), float(point[1]), heading, unit / zoom))
     columns = np.array(found).reshape(-1, 4)
     return Arrows(columns[:, :2], columns[:, 2], columns[:, 3])
 

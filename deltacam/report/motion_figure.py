@@ -40,6 +40,7 @@ class Row(NamedTuple):
         limits: each with its colour.
         low: the lower end of the range where it is not that of the limits.
         high: the upper end, likewise.
+        ticks: how numbers beside it are written, as d3 formats them.
     """
 
     title: str
@@ -49,6 +50,7 @@ class Row(NamedTuple):
     limits: Sequence[tuple[float, palette.Ink]]
     low: float | None = None
     high: float | None = None
+    ticks: str = "~s"
 
 
 def motion_figure(evidence: Evidence, motion: Motion, energy: Array | None = None) -> Json:
@@ -95,7 +97,7 @@ def _laser(evidence: Evidence, energy: Array) -> list[Row]:
     usual = [(1.0, palette.ZERO)]
     note = f"{float(np.nanmin(energy)):.3g} to {most:.3g}"
     title = "Energy per mm, times that at the feed"
-    rows = [Row(title, note, 80.0, [Line("energy", palette.JOINTS[1], most)], usual, 0.0, high=most)]
+    rows = [Row(title, note, 80.0, [Line("energy", palette.TOOL, most)], usual, 0.0, high=most, ticks="~g")]
     if evidence.program.process.power_law is not None:
         rows.append(Row("Laser power, %", "", 60.0, [Line("power", palette.TOOL, power)], [], 0.0))
     return rows
@@ -151,7 +153,9 @@ def _stacked(rows: Sequence[Row], title: str, end: float) -> Json:
     top, drawn = inner, []
     for index, row in enumerate(rows):
         domain = [(top - row.height) / inner, top / inner]
-        figure[_name(index, "yaxis")] = axis(range=_range(row), domain=domain, nticks=5, tickformat="~s", anchor="x")
+        figure[_name(index, "yaxis")] = axis(
+            range=_range(row), domain=domain, nticks=5, tickformat=row.ticks, anchor="x"
+        )
         figure["shapes"] += [_level(index, value, ink) for value, ink in row.limits]
         figure["annotations"] += [_word(row.title, 0, domain[1], strong=True), _word(row.note, 1, domain[1])]
         drawn += [{"series": one.series, "axis": _name(index, "y"), "color": one.ink.light} for one in row.lines]

@@ -25,7 +25,7 @@ from deltacam.report.bands import (
 )
 from deltacam.report.colouring import Colouring
 from deltacam.report.figures import Json, dots, lines, map_layout, packed
-from deltacam.report.marks import Marks, headings, marks_of
+from deltacam.report.marks import MANY, Marks, headings, marks_of
 from deltacam.report.stretches import stretches
 from deltacam.report.thin import thin_lines, thin_way
 from deltacam.report.view import View
@@ -64,13 +64,13 @@ def part_figure(evidence: Evidence, drawing: Drawing | None, view: View) -> Json
 
 def _above(evidence: Evidence, marks: Marks) -> list[Json]:
     """The ends of tabs as bars across the path, and the places at which the laser pierces as dots."""
-    sheet, found = to_mm(1.0) * evidence.sheet, []
+    sheet, found, small = to_mm(1.0) * evidence.sheet, [], len(marks.starts) >= MANY
     if len(marks.tabs):
-        bars = dots(sheet[marks.tabs], palette.TAB, size=12.0, symbol="line-ns")
+        bars = dots(sheet[marks.tabs], palette.TAB, size=9.0 if small else 12.0, symbol="line-ns")
         bars["marker"] |= {"angle": _degrees(-headings(evidence.sheet, marks.tabs))}
         found.append(bars | {"marker": bars["marker"] | {"line": {"color": palette.TAB.light, "width": 2.2}}})
     edge = {"line": {"color": palette.PAPER.light, "width": 1.0}}
-    for ticks, size in ((marks.pierces, 5.0), (marks.starts, 7.0)):
+    for ticks, size in ((marks.pierces, 3.5 if small else 5.0), (marks.starts, 5.5 if small else 7.0)):
         if len(ticks):
             trace = dots(sheet[ticks], palette.STRONG, size=size)
             found.append(trace | {"marker": trace["marker"] | edge})

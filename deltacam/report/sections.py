@@ -37,7 +37,7 @@ def tiles(summary: Mapping[str, Any], program: Program) -> str:
         "contours engraved": str(engraved) if engraved else "",
         "part": f"{size} mm" if size else "",
         "unit of the drawing": str(summary.get("unit", "")),
-        "energy per mm": _energy(summary.get("line_energy", {})),
+        "most energy per mm": _energy(summary.get("line_energy", {})),
         "feed": f"{_number(to_mm(program.process.feed))} mm/s",
         "process": program.process.name,
         "robot": program.robot.name,
@@ -52,7 +52,7 @@ def _energy(found: Mapping[str, float]) -> str:
     if "most" not in found:
         return ""
     joules = f"{_number(found['most'] * found['at_feed_j_mm'])} J, " if "at_feed_j_mm" in found else ""
-    return f"up to {joules}{found['most']:.3g} \u00d7 that at the feed"
+    return f"{joules}{found['most']:.3g} \u00d7 usual"
 
 
 def _shares(shares: Mapping[str, float]) -> str:
@@ -127,6 +127,8 @@ def sizes(found: Sequence[Size]) -> str:
             str(one.contour),
             f"{one.drawn * 1e6:.3f}",
             f"{one.area * 1e6:.3f}",
+            _box(one.drawn_box),
+            _box(one.box),
             f"{to_um(one.offset):.2f}",
             f"{to_um(one.edge):.2f}",
             ", ".join(f"{to_mm(value):.3f}" for value in one.place),
@@ -137,11 +139,17 @@ def sizes(found: Sequence[Size]) -> str:
         "contour",
         "drawn, mm\u00b2",
         "left, mm\u00b2",
+        "box drawn, mm",
+        "box left, mm",
         "size off, \u00b5m",
         "edge off, \u00b5m",
         "at x, y, mm",
     )
-    return table(heads, rows, numbers=range(1, 6)) if rows else ""
+    return table(heads, rows, numbers=range(1, 8)) if rows else ""
+
+
+def _box(sides: tuple[float, float]) -> str:
+    return " \u00d7 ".join(f"{to_mm(side):.3f}" for side in sides)
 
 
 def _handles(handles: Sequence[str]) -> str:

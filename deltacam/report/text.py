@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from deltacam.model import Check, Report
 from deltacam.plain import plain
+from deltacam.report import kerf
 from deltacam.report.held_back import in_words
 
 _WIDEST_PLACE: Final = 100  # characters
@@ -35,6 +36,7 @@ def to_text(report: Report, *, every_check: bool = False) -> str:
     lines += [f"  cut      {cut}"] if (cut := _cut(report.checks)) else []
     lines += [f"  energy   {energy}"] if (energy := _energy(report)) else []
     lines += [f"  held by  {in_words(report.held)}"] if report.held else []
+    lines += [f"  kerf     {of_kerf}"] if (of_kerf := kerf.in_words(report.kerf)) else []
     lines += ["", *_failures(failed, rate)] if failed else []
     lines += ["", *_in_two_columns([check for check in report.checks if check.passed])] if every_check else []
     lines += [""] if report.findings else []

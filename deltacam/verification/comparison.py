@@ -54,6 +54,12 @@ class Comparison:
     sizes: tuple[Size, ...]
     parts: tuple[Polygon, ...]
 
+    @property
+    def due(self) -> tuple[Target, ...]:
+        """The targets that the program is to cut: all, but those before the contour that it goes on with."""
+        resumes = self.evidence.program.from_contour is not None
+        return tuple(target for target in self.targets if target.runs or not resumes)
+
 
 def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
     """Put the cuts of a program beside the contours of a drawing."""

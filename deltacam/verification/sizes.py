@@ -38,7 +38,25 @@ def size(contour: Contour, rings: Sequence[Array], ways: Sequence[Array], *, ker
     left = _left(ways, kerf, contour, drawn)
     offset = abs(left.area - ideal.area) / ideal.length if ideal.length else 0.0
     edge, place = _largest_gap(ideal, left, rings, kerf / 2.0, exact_above)
-    return Size(contour.number, drawn.area, left.area, offset, edge, place)
+    return Size(
+        contour=contour.number,
+        drawn=drawn.area,
+        area=left.area,
+        offset=offset,
+        edge=edge,
+        place=place,
+        exact=ideal.area,
+        drawn_box=_box(drawn),
+        box=_box(left),
+    )
+
+
+def _box(shape: Polygon | MultiPolygon) -> tuple[float, float]:
+    """The width and the height of a shape, m; none of one that is empty."""
+    if shape.is_empty:
+        return 0.0, 0.0
+    left, bottom, right, top = shape.bounds
+    return right - left, top - bottom
 
 
 def _left(ways: Sequence[Array], kerf: float, contour: Contour, drawn: Polygon) -> Polygon | MultiPolygon:

@@ -1,4 +1,4 @@
-"""The place where a cut may begin that is nearest."""
+"""The places where cuts may begin."""
 
 import numpy as np
 import pytest
@@ -15,34 +15,47 @@ def closed(rng: np.random.Generator, count: int) -> Curve:
     return Curve(points=points, bulges=np.where(rng.random(count) < 0.4, 0.0, rng.uniform(-0.9, 0.9, count)))
 
 
+def opened(rng: np.random.Generator, count: int) -> Curve:
+    return Curve(points=closed(rng, count).points, bulges=rng.uniform(-0.9, 0.9, count - 1), closed=False)
+
+
 def cut(curve: Curve) -> Cut:
     return Cut(contour=1, layer="0", handles=("1",), curve=curve)
 
 
 @pytest.mark.parametrize("count", [2, 3, 8, 60])
-def test_the_place_is_the_one_that_projecting_on_every_segment_finds(count: int) -> None:
+def test_a_place_lies_so_far_along_its_curve(count: int) -> None:
     rng = np.random.default_rng(count)
-    for _ in range(20):
-        curve = closed(rng, count)
-        point = rng.uniform(-0.08, 0.08, 2)
-        place = Beginnings([cut(curve)]).nearest(0, *point.tolist())
-        _, _, gap = curves.nearest(curve, point)
-        assert np.hypot(*(np.array(place.begin) - point)) == pytest.approx(gap, abs=1e-12)
-        assert place.end == place.begin
-        assert Beginnings([cut(curve)]).begun(0, place).curve.points[0] == pytest.approx(place.begin, abs=1e-12)
+    all_of_them = [closed(rng, count), opened(rng, count), closed(rng, 5)]
+    beginnings = Beginnings([cut(curve) for curve in all_of_them])
+    assert beginnings.lengths == pytest.approx([curves.length(curve) for curve in all_of_them])
+    for index, curve in enumerate(all_of_them):
+        ends = np.cumsum(curves.lengths(curve))
+        along = rng.uniform(0.0, ends[-1], 20)
+        segment = np.searchsorted(ends, along)
+        points, _ = curves.evaluate(curve, segment, along - (ends[segment] - curves.lengths(curve)[segment]))
+        assert beginnings.at(np.full(20, index), along) == pytest.approx(points, abs=1e-12)
 
 
-def test_the_centre_of_a_circle_is_near_to_all_of_it() -> None:
-    place = Beginnings([cut(curves.circle(np.array([0.1, 0.2]), 0.01))]).nearest(0, 0.1, 0.2)
-    assert np.hypot(place.begin[0] - 0.1, place.begin[1] - 0.2) == pytest.approx(0.01)
+def test_a_closed_cut_is_begun_at_its_place_and_an_open_one_at_either_end() -> None:
+    rng = np.random.default_rng(1)
+    cuts = [cut(closed(rng, 6)), cut(opened(rng, 6))]
+    beginnings = Beginnings(cuts)
+    for along in rng.uniform(-0.1, 1.0, 20).tolist():
+        begun = beginnings.begun(0, along).curve
+        assert begun.points[:1] == pytest.approx(beginnings.at(np.array([0]), np.array([along])), abs=1e-9)
+        assert curves.length(begun) == pytest.approx(beginnings.lengths[0])
+    assert beginnings.begun(1, 0.0) is cuts[1]
+    assert (
+        beginnings.begun(1, float(beginnings.lengths[1])).curve.points[0].tolist() == cuts[1].curve.points[-1].tolist()
+    )
 
 
-def test_samples_lie_where_cuts_may_begin() -> None:
+def test_the_nearest_corner_is_a_vertex_and_none_is_nearer() -> None:
     rng = np.random.default_rng(5)
-    line = Curve(points=np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.1]]), bulges=np.zeros(2), closed=False)
-    cuts = [cut(closed(rng, 6)), cut(line), cut(closed(rng, 30))]
-    points, owner = Beginnings(cuts).samples(50)
-    assert points[owner == 1].tolist() == [[0.0, 0.0], [0.1, 0.1]]
-    for index in (0, 2):
-        assert (owner == index).sum() > 30
-        assert max(curves.nearest(cuts[index].curve, point)[2] for point in points[owner == index]) < 1.1e-4
+    curve = closed(rng, 9)
+    vertices = np.concatenate([[0.0], np.cumsum(curves.lengths(curve))])
+    along = rng.uniform(0.0, vertices[-1], 200)
+    found = Beginnings([cut(curve)]).corner(np.zeros(200, dtype=np.int64), along)
+    assert np.abs(found - along) == pytest.approx(np.abs(vertices - along[:, None]).min(axis=1), abs=1e-12)
+    assert np.abs(vertices - found[:, None]).min(axis=1) == pytest.approx(0.0, abs=1e-12)

@@ -89,7 +89,7 @@ BOUNDS: Final[dict[str, Bound]] = {
     "loops.angle_deg": _degrees(10.0, 180.0),
     "loops.radius_mm": _mm(0.05, 50.0),
     "tabs.width_mm": _mm(0.01, 20.0),
-    "tabs.count": Bound(1, 1000),
+    "tabs.count": Bound(0, 1000),
     "tabs.spacing_mm": _mm(1.0, 10_000.0),
     "tabs.corner_mm": _mm(0.0, 1000.0),
     "heat.distance_mm": _mm(0.0, 10_000.0),

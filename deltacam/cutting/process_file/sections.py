@@ -20,11 +20,13 @@ def read_lead(top: Table, section: str) -> Lead:
     table = top.table(section)
     bound = BOUNDS["lead.length_mm"]
     length = table.number_or("length_mm", AUTO, minimum=bound.minimum, maximum=bound.maximum)
+    shape = cast("LeadShape", table.choice("shape", get_args(LeadShape)))
+    angle = read(table, "lead.angle_deg", 90.0)
     return Lead(
-        shape=cast("LeadShape", table.choice("shape", get_args(LeadShape))),
+        shape=shape,
         length=None if length is None else bound.to_si(length),
         radius=read_optional(table, "lead.radius_mm"),
-        angle=read(table, "lead.angle_deg", 90.0),
+        angle=Lead().angle if shape == "none" else angle,
     )
 
 
@@ -73,25 +75,27 @@ def read_loops(top: Table) -> Loops:
 
 
 def read_tabs(top: Table) -> Tabs | None:
-    """The tabs; None where the file says nothing."""
+    """The tabs; None where the file says nothing, or ``count = 0``."""
     if not top.has("tabs"):
         return None
     table = top.table("tabs")
-    return Tabs(
+    tabs = Tabs(
         width=read(table, "tabs.width_mm"),
         count=read_whole(table, "tabs.count", 1) if table.has("count") else None,
         spacing=read_optional(table, "tabs.spacing_mm"),
         corner=read(table, "tabs.corner_mm", 2.0),
         holes=table.flag("holes", default=False),
     )
+    return None if tabs.count == 0 and tabs.spacing is None else tabs
 
 
 def read_heat(top: Table) -> Heat | None:
-    """How long heat is given to spread; None where the file says nothing."""
+    """How long heat is given to spread; None where the file says nothing, or a distance of 0."""
     if not top.has("heat"):
         return None
     table = top.table("heat")
-    return Heat(distance=read(table, "heat.distance_mm"), time=read(table, "heat.time_s"))
+    heat = Heat(distance=read(table, "heat.distance_mm"), time=read(table, "heat.time_s"))
+    return heat if heat.distance > 0.0 else None
 
 
 def read_gases(top: Table) -> tuple[Gas, ...]:

@@ -21,6 +21,7 @@ SMALLEST: Final = 4e-3
 _LENGTH: Final = 7.0  # of a bar, in its widths
 _MARGIN: Final = 2.0
 _LETTERS: Final = 4e-3
+_DIGITS: Final = 6
 
 
 def kerf_comb(process: Process) -> tuple[Line, ...]:
@@ -50,10 +51,10 @@ def planned_gap(process: Process) -> float:
 
 
 def kerf_from_gap(gap: float, process: Process) -> float:
-    """The kerf that was cut, m, may be negative where the gap cannot be right.
+    """The kerf that was cut, m, to a micrometre; may be negative where the gap cannot be right.
 
     Args:
         gap: from the bars, pushed together against one edge of the window, to the other edge, m.
         process: that the comb was drawn and planned for.
     """
-    return process.kerf + (gap - planned_gap(process)) / (BARS + 1)
+    return round(process.kerf + (gap - planned_gap(process)) / (BARS + 1), _DIGITS)

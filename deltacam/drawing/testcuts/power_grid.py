@@ -17,7 +17,7 @@ from deltacam.drawing.testcuts.strokes import engraved, width
 from deltacam.model import Process
 
 STEPS: Final = 5
-"""How many powers and how many feeds."""
+"""How many powers and how many feeds, at most."""
 
 _LEAST_POWER: Final = 0.6  # of the largest
 _MORE_POWER: Final = 1.2  # the largest power, of that of the process
@@ -66,7 +66,7 @@ def power_grid(process: Process) -> Grid:
         for column, feed in reversed(list(enumerate(feeds(process))))
     ]
     labels = tuple(_labels(process, pitch)) if process.engrave_feed is not None else ()
-    middle = np.full(2, 0.5 * ((STEPS - 1) * pitch + size))
+    middle = 0.5 * ((np.array([len(feeds(process)), len(powers(process))]) - 1) * pitch + size)
     cells = [Cell(line.layer, _middle([line], middle), power, feed) for line, power, feed in squares]
     if labels:
         cells.insert(0, Cell(ENGRAVED, _middle(labels, middle)))
@@ -74,20 +74,24 @@ def power_grid(process: Process) -> Grid:
 
 
 def powers(process: Process) -> tuple[float, ...]:
-    """The powers of the grid, in whole percents of the laser's rated power, upwards."""
+    """The powers of the grid, to a tenth of a percent of the laser's rated power, upwards.
+
+    None is less than the power law allows; where that leaves no room there are fewer than `STEPS`.
+    """
     most = min(1.0, _MORE_POWER * process.power)
-    return tuple(float(f"{value:.2f}") for value in np.linspace(_LEAST_POWER * most, most, STEPS))
+    least = max(_LEAST_POWER * most, process.power_law.lowest if process.power_law else 0.0, 1e-3)
+    return tuple(dict.fromkeys(max(float(f"{value:.3f}"), least) for value in np.linspace(least, most, STEPS)))
 
 
 def feeds(process: Process) -> tuple[float, ...]:
-    """The feeds of the grid, m/s, upwards; in m/min they have three digits."""
+    """The feeds of the grid, m/s, upwards; in m/min they have three digits. Fewer than `STEPS` where they are alike."""
     low, high = process.feeds or (_FEEDS[0] * process.feed, _FEEDS[1] * process.feed)
-    return tuple(float(f"{value * 60.0:.3g}") / 60.0 for value in np.linspace(low, high, STEPS))
+    return tuple(dict.fromkeys(float(f"{value * 60.0:.3g}") / 60.0 for value in np.linspace(low, high, STEPS)))
 
 
 def percent(power: float) -> str:
-    """The power in percent, without a decimal point."""
-    return f"{power * 100.0:.0f}"
+    """The power in percent, as short as it is exact."""
+    return f"{power * 100.0:.4g}"
 
 
 def metres_per_minute(feed: float) -> str:

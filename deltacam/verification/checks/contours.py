@@ -36,8 +36,11 @@ def known_contours(comparison: Comparison) -> Check:
 
 
 def cut_once(comparison: Comparison) -> Check:
-    """Every contour is cut or engraved exactly once: as many times as its path has rings, and it has at least one."""
-    wrong = [target for target in comparison.targets if len(target.runs) != len(target.rings) or not target.rings]
+    """Every contour is cut or engraved exactly once: as many times as its path has rings, and it has at least one.
+
+    In a program that goes on after a stop there may be contours that are not cut again.
+    """
+    wrong = [target for target in comparison.due if len(target.runs) != len(target.rings) or not target.rings]
     name, unit = "every contour cut once", "contours"
     if not wrong:
         return Check(name, True, 0.0, 0.0, unit)
@@ -46,6 +49,16 @@ def cut_once(comparison: Comparison) -> Check:
     tick = first.runs[-1].first if first.runs else None
     found = at_tick(comparison.evidence, name, False, count, 0.0, unit, tick=tick, where=words)
     return at_contour(found, first.contour)
+
+
+def resumed(comparison: Comparison) -> Check:
+    """A program that goes on after a stop begins with the contour that it says."""
+    evidence, name = comparison.evidence, "begins at its contour"
+    contour, runs = evidence.program.from_contour, evidence.runs
+    if contour is None or (runs and runs[0].contour == contour):
+        return Check(name, True)
+    tick = runs[0].first if runs else None
+    return at_tick(evidence, name, False, tick=tick, where=f"said to go on from contour {contour}")
 
 
 def closed(comparison: Comparison) -> Check:

@@ -19,6 +19,7 @@ POWER_STEP: Final = 1e-3
 SPEED_KNOWN: Final = 1e-6
 """How exactly the speed from a tick to the next is known, m/s; for laws that are steep at rest."""
 
+_SAME_JOINTS: Final = 1e-9  # rad
 _PIERCE: Final = KINDS.index(BlockKind.PIERCE)
 _LEAD_IN: Final = KINDS.index(BlockKind.LEAD_IN)
 _ENGRAVE: Final = KINDS.index(BlockKind.ENGRAVE)
@@ -87,7 +88,10 @@ def pierce_at_rest(evidence: Evidence) -> Check:
 
 
 def pierce_before_cut(evidence: Evidence) -> Check:
-    """Every cut follows a pierce of its contour that is as long as the process says, to within half a tick."""
+    """Every cut follows a pierce of its contour that is as long as the process says, to within half a tick.
+
+    Where the process pierces everything first, that was somewhere before, in the place where the cut begins.
+    """
     start = _stretch_starts(evidence)
     needed = evidence.program.process.pierce_time
     cuts = [run for run in evidence.runs if run.operation is Operation.CUT]
@@ -98,7 +102,10 @@ def pierce_before_cut(evidence: Evidence) -> Check:
 
 
 def cut_after_pierce(evidence: Evidence) -> Check:
-    """Every pierce is followed by a cut, or the lead-in of one, of its contour: nothing else burns a hole."""
+    """Every pierce is followed by a cut, or the lead-in of one, of its contour: nothing else burns a hole.
+
+    Where the process pierces everything first, a cut of its contour begins in its place later.
+    """
     last = np.flatnonzero((evidence.kind == _PIERCE) & (np.append(evidence.kind[1:], -1) != _PIERCE))
     wrong = np.zeros(len(evidence.kind), dtype=np.bool_)
     for row in last.tolist():
@@ -108,6 +115,10 @@ def cut_after_pierce(evidence: Evidence) -> Check:
             or following.kind not in (BlockKind.LEAD_IN, BlockKind.CUT)
             or following.contour != evidence.block_of(row).contour
         )
+        if evidence.program.process.pre_pierce and wrong[row]:
+            contour = evidence.block_of(row).contour
+            later = [run for run in evidence.runs if run.contour == contour and run.begin > row]
+            wrong[row] = not any(_same_place(evidence, row, run.begin) for run in later)
     return none_of(evidence, "cut after every pierce", wrong, "pierces")
 
 
@@ -139,12 +150,30 @@ def line_energy(evidence: Evidence) -> Check:
 
 def _pierced_for(evidence: Evidence, run: Run, start: IntArray) -> float:
     """How long the laser pierces before a cut, a lead-in between them allowed, s."""
+    if evidence.program.process.pre_pierce:
+        return _pierced_first(evidence, run, start)
     row = run.first
     if row and evidence.kind[row - 1] == _LEAD_IN:
         row = int(start[row - 1])
     if not row or evidence.kind[row - 1] != _PIERCE or evidence.block_of(row - 1).contour != run.contour:
         return 0.0
     return (row - int(start[row - 1])) / evidence.rate
+
+
+def _pierced_first(evidence: Evidence, run: Run, start: IntArray) -> float:
+    """How long the laser pierced where a cut begins, some time before, s."""
+    rows = np.flatnonzero(evidence.kind[: run.begin] == _PIERCE)
+    lasts = rows[np.append(evidence.program.block[rows[1:]] != evidence.program.block[rows[:-1]], True)[: len(rows)]]
+    for row in lasts.tolist():
+        if evidence.block_of(row).contour == run.contour and _same_place(evidence, row, run.begin):
+            return float(row + 1 - int(start[row])) / evidence.rate
+    return 0.0
+
+
+def _same_place(evidence: Evidence, row: int, other: int) -> bool:
+    """Whether the joints are the same at two rows."""
+    q = evidence.program.q
+    return bool(np.abs(q[row] - q[other]).max() <= _SAME_JOINTS)
 
 
 def _stretch_starts(evidence: Evidence) -> IntArray:

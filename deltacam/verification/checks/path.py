@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from deltacam.model import Array, BlockKind, Check, IntArray
+from deltacam.model import Array, BlockKind, Check, IntArray, Operation
 from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison, Target
 from deltacam.verification.evidence import MOVING_KINDS, Evidence, to_sheet
@@ -49,7 +49,7 @@ def uncut(comparison: Comparison) -> Check:
     """
     process = comparison.evidence.program.process
     near = process.tolerance + process.chord_tolerance + ACCURACY
-    found = [(*_uncut(comparison.evidence, target, near), target.contour) for target in comparison.targets]
+    found = [(*_uncut(comparison.evidence, target, near), target.contour) for target in comparison.due]
     total = 1e3 * sum(left for left, _, _ in found)
     if not total:
         return Check("uncut length", True, 0.0, 0.0, "mm")
@@ -66,7 +66,8 @@ def cut_length(comparison: Comparison) -> Check:
     for target in comparison.targets:
         slack = _length_slack(target) * (process.tolerance + process.chord_tolerance)
         closed = [ring if not target.contour.curve.closed else np.vstack([ring, ring[:1]]) for ring in target.rings]
-        nominal = process.passes * sum(_length(line) for line in closed)
+        passes = process.passes if target.contour.operation is Operation.CUT else 1
+        nominal = passes * sum(_length(line) for line in closed)
         length, unclear = _length_along(comparison.evidence, target)
         off = max(abs(length - nominal) - slack - unclear, 0.0) / nominal if nominal else float(length > 0.0)
         percent = 100.0 * off

@@ -58,6 +58,7 @@ def overcut(comparison: Comparison) -> Check:
     """
     evidence = comparison.evidence
     wanted, name = evidence.program.process.overcut, "overcut"
+    at_feed = evidence.program.process.feed / evidence.rate  # the way of a tick, which the planner adds at any speed
     off, ticks = [], []
     for target in comparison.targets:
         if not target.contour.curve.closed or target.contour.operation is not Operation.CUT:
@@ -66,7 +67,7 @@ def overcut(comparison: Comparison) -> Check:
         for run in target.runs if len(evidence.speed) else ():
             length, step = _overcut_of(evidence, run)
             least = min(wanted, min(around, default=wanted))
-            off.append(max(least - length - step, length - wanted - 2.0 * step, 0.0))
+            off.append(max(least - length - step, length - wanted - max(step, at_feed) - step, 0.0))
             ticks.append(run.end - 1)
     limit = 1e6 * (evidence.program.process.tolerance + evidence.program.process.chord_tolerance)
     return at_most(evidence, name, 1e6 * np.array(off), limit, "um off", ticks=np.array(ticks, dtype=np.int64))

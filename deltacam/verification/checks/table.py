@@ -6,7 +6,19 @@ from collections.abc import Callable
 from typing import Final
 
 from deltacam.model import Check
-from deltacam.verification.checks import contours, file, laser, limits, overlap, parts, path, reach, reduced, stretches
+from deltacam.verification.checks import (
+    contours,
+    file,
+    heat,
+    laser,
+    limits,
+    overlap,
+    parts,
+    path,
+    reach,
+    reduced,
+    stretches,
+)
 from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import Evidence
 
@@ -46,6 +58,7 @@ OF_POSITIONS: Final[tuple[Callable[[Evidence], Check], ...]] = (
     limits.feed,
     laser.pierce_at_rest,
     laser.laser_at_rest,
+    heat.time_to_spread,
     laser.line_energy,
 )
 """Checks that need the tool's position at every tick."""
@@ -53,6 +66,7 @@ OF_POSITIONS: Final[tuple[Callable[[Evidence], Check], ...]] = (
 OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     contours.known_contours,
     contours.cut_once,
+    contours.resumed,
     path.deviation,
     path.deviation_between,
     path.uncut,

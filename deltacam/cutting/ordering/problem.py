@@ -1,0 +1,173 @@
+"""What is put in order: cuts, where each may begin and end, what each way between costs, and what must come first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import dist
+from typing import Final, Protocol
+
+import numpy as np
+
+from deltacam.cutting.precedence import Precedence
+from deltacam.model import Array, Heat, IntArray
+
+STAGE: Final = 2.0**17
+"""s, what it costs to pass from one stage to the next: more than any change of some steps saves, so that nobody goes
+back. It must not be so large that rounding eats what is saved elsewhere."""
+
+PART: Final = 2.0**10
+"""s, what it costs to leave a part for another where parts stay together, likewise."""
+
+_SAME: Final = 1e-9  # m
+
+
+class Cost(Protocol):
+    """What ways cost."""
+
+    def __call__(self, begin: Array, end: Array, /) -> Array:
+        """The costs of the straight ways from ``begin`` to ``end``, (N, 2) m in the sheet frame: (N,) s."""
+        ...
+
+
+def distance(begin: Array, end: Array) -> Array:
+    """The length of ways as their cost."""
+    step = end - begin
+    return np.asarray(np.hypot(step[:, 0], step[:, 1]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Problem:
+    """N cuts with M places in all, cut by cut, where they may begin; a last place and cut, M and N, is the rest of all.
+
+    Attributes:
+        begins: where the tool comes to, (M + 1, 2) m; last where it goes after all.
+        ends: where it leaves, (M + 1, 2) m; last where it is before all.
+        first: the first place of every cut, (N + 2,).
+        rule: what must come before what.
+        stage: of every cut, (N + 1,): those of a lower one come first.
+        part: of every cut, (N + 1,): those of one part and stage follow each other; all the same where that is free.
+        cost: of the ways.
+        heat: what is so near to the end of the cut before costs at least so much; None for no rule.
+    """
+
+    begins: Array
+    ends: Array
+    first: IntArray
+    rule: Precedence
+    stage: IntArray
+    part: IntArray
+    cost: Cost
+    heat: Heat | None = None
+
+    @property
+    def count(self) -> int:
+        """How many cuts there are."""
+        return len(self.first) - 2
+
+    @property
+    def owner(self) -> IntArray:
+        """The cut of every place, (M + 1,)."""
+        return np.repeat(np.arange(self.count + 1), np.diff(self.first))
+
+    def ways(self, left: IntArray, reached: IntArray) -> Array:
+        """What the ways from the ends of places to the beginnings of others cost, (N,) s, without stages and parts."""
+        begin, end = self.ends[left], self.begins[reached]
+        found = self.cost(begin, end)
+        if self.heat is not None:
+            near = (distance(begin, end) < self.heat.distance) & (left != self.first[-2]) & (reached != self.first[-2])
+            found = np.where(near, np.maximum(found, self.heat.time), found)
+        return np.asarray(found)
+
+    def fences(self, left: IntArray, reached: IntArray) -> Array:
+        """What passing from the cuts ``left`` to the cuts ``reached`` costs because of stages and parts, (N,) s."""
+        stages = np.where(left == self.count, 0, self.stage[left])
+        steps = np.abs(self.stage[reached] - stages)
+        inside = (steps == 0) & (left < self.count) & (reached < self.count)
+        return np.asarray(STAGE * steps + PART * (inside & (self.part[left] != self.part[reached])))
+
+    def mirrors(self) -> tuple[IntArray, bool]:
+        """For every place that of the same cut which is most like it run the other way, (M + 1,).
+
+        And whether all are exactly that, so that a stretch of cuts that is reversed costs the same inside.
+        """
+        mirror = np.arange(len(self.begins))
+        lopsided = np.flatnonzero(np.abs(self.begins[:-1] - self.ends[:-1]).max(axis=1, initial=0.0) > _SAME)
+        exact = True
+        for place in lopsided.tolist():
+            cut = int(np.searchsorted(self.first, place, side="right")) - 1
+            own = slice(self.first[cut], self.first[cut + 1])
+            off = np.hypot(*(self.begins[own] - self.ends[place]).T) + np.hypot(
+                *(self.ends[own] - self.begins[place]).T
+            )
+            mirror[place] = self.first[cut] + int(off.argmin())
+            exact &= float(off.min()) < _SAME
+        return mirror, exact
+
+
+class Lookup:
+    """What single ways cost, found once: ``rows[left][reached]``, by places."""
+
+    def __init__(self, problem: Problem) -> None:
+        owner = problem.owner.tolist()
+        fenced = bool(len(np.unique(problem.stage)) > 1 or len(np.unique(problem.part)) > 1)
+        begins, ends = problem.begins.tolist(), problem.ends.tolist()
+        one = _one(problem)
+
+        def way(left: int, reached: int) -> float:
+            found = one(*ends[left], *begins[reached])
+            if heat is not None and left != rest and reached != rest:
+                if found < heat.time and dist(ends[left], begins[reached]) < heat.distance:
+                    found = heat.time
+            if fenced:
+                found += fence(owner[left], owner[reached])
+            return found
+
+        heat, rest, fence = problem.heat, len(begins) - 1, _fence(problem)
+        self.rows: list[dict[int, float]] = [_Row(way, place) for place in range(len(begins))]
+
+    def size(self) -> int:
+        """How many ways are remembered."""
+        return sum(map(len, self.rows))
+
+    def forget(self) -> None:
+        """Give back the memory."""
+        for row in self.rows:
+            row.clear()
+
+
+class _Row(dict[int, float]):
+    """What the ways from one place cost, by the places reached."""
+
+    __slots__ = ("_left", "_way")
+
+    def __init__(self, way: Callable[[int, int], float], left: int) -> None:
+        super().__init__()
+        self._way, self._left = way, left
+
+    def __missing__(self, reached: int) -> float:
+        found = self[reached] = self._way(self._left, reached)
+        return found
+
+
+def _one(problem: Problem) -> Callable[[float, float, float, float], float]:
+    """The cost of one way."""
+    one = getattr(problem.cost, "one", None)
+    if one is not None:
+        return one  # type: ignore[no-any-return]
+    if problem.cost is distance:
+        return lambda x, y, to_x, to_y: dist((x, y), (to_x, to_y))
+    return lambda x, y, to_x, to_y: float(problem.cost(np.array([[x, y]]), np.array([[to_x, to_y]]))[0])
+
+
+def _fence(problem: Problem) -> Callable[[int, int], float]:
+    """`Problem.fences` for two cuts."""
+    stage, part, rest = problem.stage.tolist(), problem.part.tolist(), problem.count
+
+    def fence(left: int, reached: int) -> float:
+        steps = abs(stage[reached] - (0 if left == rest else stage[left]))
+        if steps:
+            return STAGE * steps
+        return PART if left != rest and reached != rest and part[left] != part[reached] else 0.0
+
+    return fence
