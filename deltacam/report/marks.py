@@ -144,7 +144,7 @@ def _numbers(starts: Array, unit: float) -> Numbers:
 def _arrows(evidence: Evidence, runs: Sequence[Run], crowd: Crowd, unit: float) -> Arrows:
     """One arrow in the middle of every cut, more between as one looks closer; the first ones first."""
     ways = [_way(evidence, run) for run in runs]
-    places = [(least, *one) for way in ways for least, *one in _places(*way, unit)]
+    places = [place for way in ways for place in _places(*way, unit)]
     places.sort(key=lambda place: place[0])
     found: list[tuple[float, float, float, float]] = []
     for least, step, heading in places[:_MOST_ARROWS]:
