@@ -177,7 +177,7 @@ class Descent:
         return Change(gain, (sequence[p - 1], sequence[p], sequence[r - 1], sequence[r - self._size]))
 
     def _moved_backwards(self, firsts: range, ends: range, to: int) -> Change | None:
-        """Turn a short stretch from one of ``firsts`` to one of ``ends``, and put it into the step ``to``, if it saves."""
+        """Turn a short stretch, from one of ``firsts`` to one of ``ends``, and put it into the step ``to``."""
         way, size = self._way, self._size
         sequence, rows, place, mirror = way.sequence, way.rows, way.place, way.mirror
         ahead, behind = place[sequence[to - 1]], place[sequence[to - size]]

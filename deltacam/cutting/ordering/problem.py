@@ -109,7 +109,9 @@ class Problem:
         equal = np.flatnonzero(off == np.repeat(least, counts))
         mirror[lopsided] = other[equal[np.searchsorted(equal, start)]]
         itself = np.arange(len(mirror))
-        return np.where(mirror[mirror] == itself, mirror, itself), bool((least < _SAME).all())
+        mirror = np.where(mirror[mirror] == itself, mirror, itself)
+        off = distance(self.begins[mirror], self.ends)[:-1]
+        return mirror, bool(off.max() < _SAME)
 
 
 class Lookup:
@@ -169,7 +171,9 @@ def _one(problem: Problem) -> Callable[[float, float, float, float], float]:
 
 def _fence(problem: Problem) -> Callable[[int, int], float]:
     """`Problem.fences` for two cuts."""
-    stage, part, rest = problem.stage.tolist(), problem.part.tolist(), problem.count
+    stage: list[int] = problem.stage.tolist()
+    part: list[int] = problem.part.tolist()
+    rest = problem.count
 
     def fence(left: int, reached: int) -> float:
         steps = abs(stage[reached] - (0 if left == rest else stage[left]))
