@@ -98,7 +98,8 @@ def clothoid_rectangle() -> Path:
             ends = clothoid.advance(place[None], heading * one, curvature * one, sharpness * one, way * one)
             place, heading = ends[0][0], float(ends[1][0])
     table = np.array(rows)
-    return Path(table[:, :2], table[:, 2], table[:, 3], table[:, 4], table[:, 5], LARGE.workspace.sheet_z)
+    columns = (table[:, :2], *table[:, 2:6].T, np.zeros(len(table)), np.full(len(table), np.inf))
+    return Path(*columns, LARGE.workspace.sheet_z)
 
 
 def arc_rectangle(*, ramps: bool) -> Path:

@@ -13,8 +13,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from deltacam.cutting import kerf, order, placement
+from deltacam.cutting import kerf, placement
 from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_process
+from deltacam.cutting.resume import resume
+from deltacam.cutting.ways import Ways, ways
 from deltacam.drawing.reader import read_drawing
 from deltacam.model import (
     EVERYTHING,
@@ -27,9 +29,11 @@ from deltacam.model import (
     Placement,
     Process,
     Report,
+    Search,
     Selection,
 )
 from deltacam.motion import setpoints
+from deltacam.motion.tape import Setpoints
 from deltacam.placing.find import By, Found, Task, find
 from deltacam.placing.sampled import Sampled
 from deltacam.program import csv
@@ -37,7 +41,6 @@ from deltacam.program.atomic import write_whole
 from deltacam.program.outputs import Outputs, make_folder
 from deltacam.program.program import DrawingRef, Program
 from deltacam.report import html, listing
-from deltacam.robot.rapid import Rapids
 from deltacam.robot.reader import DEFAULT_ROBOT, load_robot
 from deltacam.robot.robot import Robot
 from deltacam.verification import verify as verification
@@ -80,6 +83,8 @@ def plan(
     rotation: float = 0.0,
     place: By | None = None,
     mode: Mode = Mode.CUT,
+    from_contour: int | None = None,
+    search: Search = Search(),  # noqa: B008 - it cannot be changed
     jobs: int | None = None,
     what_if: bool | None = None,
     progress: Progress = _silent,
@@ -98,6 +103,8 @@ def plan(
         rotation: of the drawing about that centre, rad, counter-clockwise.
         place: what the place and the rotation are chosen by, as `best_places` finds them; None takes those given.
         mode: cut, the same motion with the laser off, or the bounding box with the laser off.
+        from_contour: the number of the contour to go on with after a stop; what comes before it is not cut again.
+        search: how long the order of the cuts is looked for, and what must stay together.
         jobs: how many processes plan the motion, >= 1; None takes as many as pay. The program is the same for any.
         what_if: whether to find out how long the cuts would take without each limit; None does where that is quick.
         progress: is told what is going on.
@@ -113,7 +120,7 @@ def plan(
     progress("read", 0, 1)
     selection = replace(selection, rules=process.rules, open=process.open)
     part = read_drawing(drawing, data=data, unit=unit, default_unit=default_unit, selection=selection)
-    how = _How(robot, process, at, rotation, mode, jobs, what_if, progress)
+    how = _How(robot, process, at, rotation, mode, jobs, what_if, progress, from_contour, search)
     found = None if place is None else _placed(part, how, place)
     if found is not None:
         how = how._replace(at=found.best[0].spot.at, rotation=found.best[0].spot.rotation)
@@ -221,6 +228,8 @@ class _How(NamedTuple):
     jobs: int | None
     what_if: bool | None
     progress: Progress
+    from_contour: int | None = None
+    search: Search = Search()
 
 
 def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple[Finding, ...]]:
@@ -239,7 +248,7 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
         unit=part.unit_in_words,
         metres_per_unit=part.metres_per_unit,
     )
-    moves = (_frame if how.mode is Mode.FRAME else _cutting)(part, shifted.cuts, how, where)
+    moves, findings = (_frame if how.mode is Mode.FRAME else _cutting)(part, shifted.cuts, how, where)
     program = Program(
         robot=robot,
         placement=where,
@@ -250,8 +259,9 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
         q=moves.q,
         power=moves.power,
         block=moves.block,
+        from_contour=how.from_contour,
     )
-    return program, moves.held, shifted.findings
+    return program, moves.held, (*shifted.findings, *findings)
 
 
 def _placed(part: Drawing, how: _How, by: By) -> Found:
@@ -267,14 +277,14 @@ def _placed(part: Drawing, how: _How, by: By) -> Found:
 
     def sample(at: tuple[float, float], rotation: float) -> Sampled:
         where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
-        ordered, error = _ordered(part, cuts, how, where), part.conversion_error
+        ordered, error = _ways(part, cuts, how, where).cuts, part.conversion_error
         moves, rests = setpoints.moves_of(ordered, robot=robot, process=process, placement=where, drawing_error=error)
         park, resting = np.array(robot.workspace.park), (rests - 1) / robot.controller.rate_hz
         return Sampled.of(moves, at=at, rotation=rotation, park=park, resting=resting)
 
     def duration(at: tuple[float, float], rotation: float) -> float:
         where = placement.place(part.contours, robot=robot, at=at, rotation=rotation)
-        return (len(_cutting(part, cuts, quiet, where).q) - 1) / robot.controller.rate_hz
+        return (len(_cutting(part, cuts, quiet, where)[0].q) - 1) / robot.controller.rate_hz
 
     task = Task(footprint, robot, sample, duration)
     return find(task, by=by, progress=lambda done, total: how.progress("place", done, total))
@@ -293,17 +303,26 @@ def _where(found: Found) -> Finding:
     return Finding(f"{what}; {times}, error of the tool {errors}", kind="place")
 
 
-def _ordered(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Cut, ...]:
-    parents = {contour.number: contour.parent for contour in part.contours}
-    start = _to_sheet(how.robot.workspace.park, where)
-    return order.order(cuts, parents=parents, start=start, cost=Rapids(how.robot, where)).cuts
+def _ways(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> Ways:
+    return ways(
+        cuts,
+        part.contours,
+        process=how.process,
+        robot=how.robot,
+        placement=where,
+        search=how.search,
+        progress=lambda done, total: how.progress("order", done, total),
+    )
 
 
-def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> setpoints.Setpoints:
+def _cutting(
+    part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement
+) -> tuple[Setpoints, tuple[Finding, ...]]:
     how.progress("order", 0, 1)
-    ordered = _ordered(part, cuts, how, where)
-    return setpoints.plan_motion(
-        ordered,
+    found = _ways(part, cuts, how, where)
+    left, left_out = (found.cuts, ()) if how.from_contour is None else resume(found.cuts, how.from_contour)
+    moves = setpoints.plan_motion(
+        left,
         robot=how.robot,
         process=how.process,
         placement=where,
@@ -313,19 +332,14 @@ def _cutting(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) 
         what_if=how.what_if,
         progress=lambda done, total: how.progress("motion", done, total),
     )
+    return moves, (*found.findings, *left_out)
 
 
-def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> setpoints.Setpoints:
+def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Setpoints, tuple[Finding, ...]]:
     (left, bottom), (right, top) = placement.bounding_box(cuts)
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
     placement.refuse_frame_outside(corners, robot=how.robot, placement=where)
-    return setpoints.plan_frame(corners, robot=how.robot, process=how.process, placement=where)
-
-
-def _to_sheet(place: tuple[float, float], where: Placement) -> tuple[float, float]:
-    x, y = place[0] - where.x, place[1] - where.y
-    cos, sin = np.cos(where.rotation), np.sin(where.rotation)
-    return float(cos * x + sin * y), float(cos * y - sin * x)
+    return setpoints.plan_frame(corners, robot=how.robot, process=how.process, placement=where), ()
 
 
 def _content(program: Program) -> bytes:

@@ -54,6 +54,11 @@ class Table:
         """The file and the section, for messages: ``robot.toml [joints]``."""
         return f"{self._file} [{self._section}]" if self._section else self._file
 
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys that the file gives here, in its order; asking marks none of them as known."""
+        return tuple(self._values)
+
     def problem(self, what: str, *, hint: str = "") -> DeltacamError:
         """An error of the file's kind that is located in this table."""
         return self._error(what, where=self.where, hint=hint)
@@ -92,6 +97,14 @@ class Table:
         """The number ``key``, from ``minimum`` to ``maximum`` in the file's own unit."""
         value = self._get(key, default, f"a number from {minimum:g} to {maximum:g}")
         return self._bounded(key, value, minimum, maximum)
+
+    def number_or(self, key: str, word: str, *, minimum: float, maximum: float) -> float | None:
+        """The number ``key`` as `number`; None where the file gives the ``word`` in its place, or nothing."""
+        if not self.has(key) or self._values[key] == word:
+            return None
+        if isinstance(self._values[key], str):
+            self.choice(key, (word,))
+        return self.number(key, minimum=minimum, maximum=maximum)
 
     def numbers(
         self,

@@ -211,3 +211,22 @@ def test_a_name_may_stand_for_a_whole_number() -> None:
     assert "yellow" in caught.value.hint
     with pytest.raises(RobotError, match="not a whole number"):
         table(color="yellow").integer("color", minimum=1, maximum=9)
+
+
+def test_a_word_may_stand_in_place_of_a_number() -> None:
+    one = table(length=2, other="auto", wrong="long")
+    bounds = {"minimum": 0.0, "maximum": 9.0}
+    assert one.number_or("length", "auto", **bounds) == 2.0
+    assert one.number_or("other", "auto", **bounds) is None
+    assert one.number_or("missing", "auto", **bounds) is None
+    with pytest.raises(RobotError, match="wrong = 'long' is not \"auto\""):
+        one.number_or("wrong", "auto", **bounds)
+    with pytest.raises(RobotError, match="outside 0 to 1"):
+        one.number_or("length", "auto", minimum=0.0, maximum=1.0)
+
+
+def test_the_keys_of_a_table_are_those_of_the_file_in_its_order() -> None:
+    one = table(b=1, a=2)
+    assert one.keys == ("b", "a")
+    with pytest.raises(RobotError, match="unknown key 'b'"):
+        one.finish()

@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 
 PATH: Final = click.Path(path_type=Path)
 _MACHINES: Final = ("jobs", "time_limit", "memory", "scheduler", "tls_ca", "tls_cert", "tls_key")
-_HOW: Final = ("at", "rotate", "place", "dry_run", "frame", "what_if")
+_HOW: Final = (
+    *("at", "rotate", "place", "order_time", "order_seed", "parts_together"),
+    *("dry_run", "frame", "what_if"),
+)
 _TIME: Final = (1.0, 7 * 86400.0)
 _MEMORY: Final = (500e6, 1e15)
 

@@ -21,6 +21,7 @@ COMMANDS: Final = {
     "batch": "Plan and verify every drawing in FOLDER.",
     "verify": "Verify PROGRAM, trusting nothing the planner said.",
     "export": "Write PROGRAM in another format.",
+    "process": "Choose a process, make one of your own, draw test cuts.",
     "robot": "Study a robot: what it can do, where, and how exactly.",
 }
 """The commands and their short help. A command ``x`` is ``deltacam_cli.x:command``; it is imported when it is used."""
@@ -87,6 +88,7 @@ def cli(traceback: bool) -> None:
     deltacam batch parts -o out             does that for every drawing in a folder
     deltacam verify part.program.csv        checks it again, independently
     deltacam export part.program.csv --to gcode
+    deltacam process list                   lists materials and lasers that are known
     deltacam robot show delta-300           shows what a robot can do
 
     Exit codes: 0 done and every check passed; 1 a check failed; 2 the command line, robot, process or drawing must be

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", "folder", type=click.Path(path_type=Path), default=Path(), help="Folder for the files.")
 @planning_options
 @how_options
+@click.option(
+    "--from-contour", type=click.IntRange(1), metavar="N", help="Go on after a stop: leave out what comes before it."
+)
 @click.option("--jobs", type=JOBS, help="Processes for planning; the result is the same. 0: as many as pay.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of the summary.")
 def command(
@@ -34,7 +37,11 @@ def command(
     at: str | None,
     rotate: str | None,
     place: str | None,
+    order_time: str | None,
+    order_seed: int,
+    parts_together: bool,
     what_if: bool | None,
+    from_contour: int | None,
     jobs: int | None,
     as_json: bool,
     **values: Any,
@@ -53,11 +60,24 @@ def command(
 
     Outputs.of(drawing, folder).clear()  # before anything else can be refused
     own = options.defaults()
-    given = how(at=at, rotate=rotate, place=place, dry_run=dry_run, frame=frame, what_if=what_if)
+    if from_contour is not None and frame:
+        raise click.UsageError("--from-contour says what is cut, and --frame cuts nothing")
+    given = how(
+        at=at,
+        rotate=rotate,
+        place=place,
+        order_time=order_time,
+        order_seed=order_seed,
+        parts_together=parts_together,
+        dry_run=dry_run,
+        frame=frame,
+        what_if=what_if,
+    )
     with ProgressLine() as progress:
         planned, outputs = plan_to_folder(
             drawing,
             folder,
+            from_contour=from_contour,
             jobs=jobs or None,
             progress=progress,
             **given,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from deltacam_cli import options
+from deltacam_cli.process_options import PROCESS_OPTIONS, with_options
 
 if TYPE_CHECKING:
     from deltacam.defaults import Defaults
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 JOBS = click.IntRange(0, 64)
+_ORDER_TIME = (0.0, 86_400.0)  # s
 
 _HOW = (
     click.option("--at", metavar="X,Y", help="Where the part's centre goes, mm; without it 0,0."),
@@ -26,6 +27,13 @@ _HOW = (
         type=click.Choice(["auto", "time", "accuracy"]),
         help="Find the place and the turn: by time and accuracy (auto), or by one of them.",
     ),
+    click.option(
+        "--order-time", metavar="TIME", help="About how long the order of the cuts is looked for, seconds (or 2min)."
+    ),
+    click.option(
+        "--order-seed", type=click.IntRange(0), default=0, metavar="N", help="Another one may find another order."
+    ),
+    click.option("--parts-together", is_flag=True, help="Cut all of a part before the next one."),
     click.option("--dry-run", is_flag=True, help="The same motion with the laser off."),
     click.option("--frame", is_flag=True, help="Only trace the bounding box, with the laser off."),
     click.option(
@@ -41,12 +49,7 @@ _MACHINE = (
 )
 _VALUES = (
     click.option("--accept-loss", is_flag=True, help="Plan what could be read of a damaged drawing."),
-    click.option("--kerf", metavar="LENGTH", help="Width of the cut, mm unless a unit is given (0.008in)."),
-    click.option("--feed", metavar="SPEED", help="Cutting speed, mm/s unless a unit is given (12m/min)."),
-    click.option(
-        "--tolerance", metavar="LENGTH", help="Largest deviation from the kerf path, mm unless a unit is given."
-    ),
-    click.option("--corner", type=click.Choice(["round", "stop"]), help="Round corners within the tolerance, or stop."),
+    *PROCESS_OPTIONS,
     click.option(
         "--jerk", metavar="JERK", help="Largest joint jerk, deg/s3 (or 3500rad/s3), or none; else the robot's."
     ),
@@ -71,7 +74,16 @@ def how_options(command: Command) -> Command:
 
 
 def how(
-    *, at: str | None, rotate: str | None, place: str | None, dry_run: bool, frame: bool, what_if: bool | None
+    *,
+    at: str | None,
+    rotate: str | None,
+    place: str | None,
+    order_time: str | None,
+    order_seed: int,
+    parts_together: bool,
+    dry_run: bool,
+    frame: bool,
+    what_if: bool | None,
 ) -> dict[str, Any]:
     """What `how_options` say, as the pipeline takes it.
 
@@ -79,16 +91,21 @@ def how(
         DeltacamError: a value is wrong; names the option.
         UsageError: two options exclude each other.
     """
-    from deltacam.model import Mode
+    from deltacam.model import Mode, Search
+    from deltacam.units import parse_duration
 
     if dry_run and frame:
         raise click.UsageError("--dry-run and --frame exclude each other")
     if place is not None and (at is not None or rotate is not None):
         raise click.UsageError("--place finds the place and the turn; --at and --rotate give them")
     given = {"at": options.place("--at", at or "0,0"), "rotation": options.angle("--rotate", rotate or "0")}
+    time = None
+    if order_time is not None:
+        time = options.bounded("--order-time", order_time, parse_duration, _ORDER_TIME, "from 0 s to 24 h")
     found = {"place": "both" if place == "auto" else place}
     return {
         "mode": Mode.FRAME if frame else Mode.DRY_RUN if dry_run else Mode.CUT,
+        "search": Search(time, order_seed, parts_together),
         "what_if": what_if,
         **(given if place is None else found),
     }
@@ -122,17 +139,9 @@ def settings(
     }
 
 
-def _process(
-    name: str | None, own: Defaults, *, kerf: str | None, feed: str | None, tolerance: str | None, corner: str | None
-) -> Process:
+def _process(name: str | None, own: Defaults, **single_values: str | None) -> Process:
     """The process with the single values that the command line gives."""
     from deltacam.cutting.process import DEFAULT_PROCESS, load_process
 
-    values: dict[str, Any] = {
-        "kerf": options.length("--kerf", kerf),
-        "feed": options.speed("--feed", feed),
-        "tolerance": options.length("--tolerance", tolerance),
-        "corner": corner,
-    }
     process = options.load(load_process, name, own.process, DEFAULT_PROCESS, f"{own.file}: process")
-    return replace(process, **{key: value for key, value in values.items() if value is not None})
+    return with_options(process, **single_values)

@@ -6,6 +6,7 @@ A bulge b stands for an arc that turns by 4 atan(b) over the chord c between its
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -273,3 +274,37 @@ def start_at(curve: Curve, segment: int, distance: float) -> Curve:
     rest = np.roll(curve.bulges, -segment)[1:]
     bulges = np.concatenate([[np.tan(quarter * (1.0 - share))], rest, [np.tan(quarter * share)]])
     return replace(curve, points=points, bulges=bulges)
+
+
+def chain(parts: Sequence[Curve]) -> Curve:
+    """Open curves, each of which begins where the one before it ends, as one; a single curve is returned as it is."""
+    if len(parts) == 1:
+        return parts[0]
+    points = np.concatenate([*(part.points[:-1] for part in parts), parts[-1].points[-1:]])
+    return Curve(points=points, bulges=np.concatenate([part.bulges for part in parts]), closed=False)
+
+
+def opened(curve: Curve) -> Curve:
+    """A closed curve as an open one that ends where it begins."""
+    return Curve(points=np.concatenate([curve.points, curve.points[:1]]), bulges=curve.bulges, closed=False)
+
+
+def part(curve: Curve, first: float, last: float) -> Curve:
+    """The part of an open curve between two distances from its start, 0 <= first < last <= its length, m.
+
+    What is shorter than a nanometre at an end of a segment is left out.
+    """
+    ends = np.cumsum(lengths(curve))
+    starts = ends - lengths(curve)
+    inside = np.flatnonzero((ends > first + 1e-9) & (starts < last - 1e-9))
+    reach = lengths(curve)[inside]
+    low = np.clip(first - starts[inside], 0.0, reach)
+    high = np.clip(last - starts[inside], 0.0, reach)
+    begin, _ = evaluate(curve, inside, low)
+    end, _ = evaluate(curve, inside[-1:], high[-1:])
+    points = np.where((low > 0.0)[:, None], begin, curve.starts[inside])
+    whole = high[-1] >= reach[-1] - 1e-12
+    stop = curve.ends[inside[-1:]] if whole else end
+    share = np.divide(high - low, reach, out=np.ones_like(reach), where=reach > 0.0)
+    bulges = np.where(share < 1.0, np.tan(share * np.arctan(curve.bulges[inside])), curve.bulges[inside])
+    return Curve(points=np.concatenate([points, stop]), bulges=bulges, closed=False)

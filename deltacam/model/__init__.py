@@ -18,7 +18,7 @@ from deltacam.model.drawing import (
 )
 from deltacam.model.findings import Finding
 from deltacam.model.ledger import LedgerEntry, Outcome
-from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement, Stretch
+from deltacam.model.motion import Block, BlockKind, Cut, Mode, Placement, Search, Stretch
 from deltacam.model.process import (
     Corner,
     Gas,
@@ -34,7 +34,7 @@ from deltacam.model.process import (
     StartRule,
     Tabs,
 )
-from deltacam.model.report import UNCHECKED, Check, Held, Report, Size
+from deltacam.model.report import UNCHECKED, Check, Held, KerfEffect, Report, Size
 
 __all__ = [
     "DEFAULT_JOINING",
@@ -58,6 +58,7 @@ __all__ = [
     "Heat",
     "Held",
     "IntArray",
+    "KerfEffect",
     "Layer",
     "Lead",
     "LeadShape",
@@ -72,6 +73,7 @@ __all__ = [
     "Provenance",
     "Report",
     "Rule",
+    "Search",
     "Selection",
     "Size",
     "Slower",

@@ -40,10 +40,12 @@ class Stretch:
     Attributes:
         kind: what is done there. The laser is off in a tab and in a lead-out, and on in all others.
         curve: open, sheet frame, m; it begins where the stretch before it ends.
+        feed: m/s; None is that of the cut.
     """
 
     kind: BlockKind
     curve: Curve
+    feed: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +62,7 @@ class Cut:
         way: of the tool, from the pierce to where the next move begins: lead-in, cut, loops, tabs, overcut, lead-out;
             empty where it is the curve alone.
         feed: m/s; None is that of the process.
+        wait: at rest with the laser off before it begins, s.
     """
 
     contour: int
@@ -69,6 +72,7 @@ class Cut:
     operation: Operation = Operation.CUT
     way: tuple[Stretch, ...] = ()
     feed: float | None = None
+    wait: float = 0.0
 
     @property
     def where(self) -> str:
@@ -94,3 +98,18 @@ class Block:
     contour: int | None = None
     layer: str = ""
     handles: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How the order of the cuts is looked for.
+
+    Attributes:
+        time: about how long, s; None for what usually pays.
+        seed: of what is tried at random; the same gives the same order.
+        together: whether all contours of a part are cut before those of the next.
+    """
+
+    time: float | None = None
+    seed: int = 0
+    together: bool = False

@@ -59,6 +59,9 @@ class Size:
         offset: the difference to what an exact cut would leave, as an even shift of the edge, m.
         edge: the largest distance from the edge that an exact cut would leave, m; at a corner that of its sides.
         place: where that is, (x, y) m in the sheet frame.
+        exact: the area that an exact cut would leave, m^2: other than drawn where the beam does not reach.
+        drawn_box: width and height as drawn, m.
+        box: width and height of what is left, m.
     """
 
     contour: int
@@ -67,6 +70,30 @@ class Size:
     offset: float
     edge: float
     place: tuple[float, float]
+    exact: float
+    drawn_box: tuple[float, float]
+    box: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class KerfEffect:
+    """What the kerf does to a closed contour that is cut.
+
+    Attributes:
+        contour: the number of the drawn contour.
+        paths: how many closed paths the beam runs: none where the kerf swallows the contour, several where it splits.
+        meets: the numbers of the contours whose slot runs into that of this one.
+        corners: how many inner corners the beam does not reach.
+        depth: of the material that is left in the tip of the worst of them, m.
+        place: of its tip, (x, y) m in the sheet frame.
+    """
+
+    contour: int
+    paths: int
+    meets: tuple[int, ...]
+    corners: int
+    depth: float
+    place: tuple[float, float] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +124,7 @@ class Report:
         findings: what a person should know.
         sizes: what is left of every closed contour that is cut; empty where nothing was compared.
         held: what holds back the motion along every contour, as the planner says; empty where nothing was planned.
+        kerf: what the kerf does to every closed contour that is to be cut; empty where nothing was compared.
     """
 
     checks: tuple[Check, ...]
@@ -105,6 +133,7 @@ class Report:
     findings: tuple[Finding, ...] = field(default=())
     sizes: tuple[Size, ...] = ()
     held: tuple[Held, ...] = ()
+    kerf: tuple[KerfEffect, ...] = ()
 
     @property
     def passed(self) -> bool:

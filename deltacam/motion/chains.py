@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, BoolArray, Curve
+from deltacam.model import Array, BoolArray, Curve, IntArray
 
 LONGEST_TURN: Final = np.radians(150.0)
 """Largest angle that one arc turns through, rad."""
@@ -24,20 +24,26 @@ SHARPEST_IN_CHAIN: Final = np.radians(20.0)
 _FEWEST: Final = 3
 
 
-def fit(curve: Curve, *, allowance: float, largest_corner: float = SHARPEST_IN_CHAIN) -> tuple[Curve, Array]:
+def fit(
+    curve: Curve, *, allowance: float, largest_corner: float = SHARPEST_IN_CHAIN, stretch: IntArray | None = None
+) -> tuple[Curve, Array, IntArray]:
     """The curve with its chains of short segments replaced by arcs and lines.
 
     Args:
         curve: any; where a closed one begins a vertex stays.
         allowance: how far an arc may be from the segments that it stands for, m, >= 0.
         largest_corner: chains do not go through corners that turn by more, rad.
+        stretch: that each segment belongs to, (M,); no chain goes from one to another.
 
     Returns:
-        the curve, and how far each of its segments is from what it stands for, (M,) m.
+        the curve, how far each of its segments is from what it stands for, (M,) m, and the first of the segments that
+        it stands for, (M,).
     """
     count = len(curve.bulges)
     corner = curves.corner_angles(curve)[1 if curve.closed else 0 :]
     smooth = np.abs(corner) <= largest_corner
+    if stretch is not None:
+        smooth &= stretch[1:] == stretch[:-1]
     closing = curve.points[:1] if curve.closed else curve.points[:0]
     vertices = np.concatenate([curve.points, closing])
     middles, _ = curves.evaluate(curve, np.arange(count), 0.5 * curves.lengths(curve))
@@ -59,12 +65,12 @@ def fit(curve: Curve, *, allowance: float, largest_corner: float = SHARPEST_IN_C
         off.append(worst)
         at = end
     if not bulges:
-        return curve, np.zeros(count)
+        return curve, np.zeros(count), np.arange(count)
     kept.extend(range(at + 1, count + 1))
     bulges.extend(curve.bulges[at:])
     off.extend([0.0] * (count - at))
     points = vertices[kept[:-1]] if curve.closed else vertices[kept]
-    return replace(curve, points=points, bulges=np.array(bulges)), np.array(off)
+    return replace(curve, points=points, bulges=np.array(bulges)), np.array(off), np.array(kept[:-1])
 
 
 def _promising(vertices: Array, smooth: BoolArray, allowance: float) -> BoolArray:

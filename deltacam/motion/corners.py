@@ -54,7 +54,15 @@ class Pace:
 
 
 def pieces(
-    cut: Curve, *, corner: Corner, deviation: float, ramps: bool, z: float, pace: Pace | None = None
+    cut: Curve,
+    *,
+    corner: Corner,
+    deviation: float,
+    ramps: bool,
+    z: float,
+    pace: Pace | None = None,
+    stretch: IntArray | None = None,
+    speed: Array | None = None,
 ) -> tuple[Path, ...]:
     """Split a cut at the corners to stop at, and smooth the rest.
 
@@ -65,15 +73,21 @@ def pieces(
         ramps: whether the curvature may not jump either.
         z: height of the sheet, m.
         pace: of the tool; where it is known, corners at which a stop takes less time than a blend are stopped at.
+        stretch: that each segment of the cut belongs to, (M,); of a blend each half belongs to its own side.
+        speed: not to be exceeded in each segment of the cut, (M,) m/s; in a blend the smaller one beside it counts.
 
     Returns:
         paths whose segments are tangent, each to be run from rest to rest, together the whole cut.
     """
     largest = SHARPEST_PASSED if corner == "stop" else SHARPEST_IN_CHAIN
-    whole = _without_slivers(cut)
+    stretch = np.zeros(len(cut.bulges), dtype=np.int64) if stretch is None else stretch
+    speed = np.full(len(cut.bulges), np.inf) if speed is None else speed
+    whole, kept = _without_slivers(cut)
     if whole is not cut:
         deviation = max(deviation - _SHORTEST_SEGMENT, 0.0)
-    curve, off = fit(whole, allowance=CHAINS * deviation, largest_corner=largest)
+    changes = [own[1:] != own[:-1] for own in (stretch[kept], speed[kept])]
+    owner = np.concatenate([[0], np.cumsum(changes[0] | changes[1])])
+    curve, off, first = fit(whole, allowance=CHAINS * deviation, largest_corner=largest, stretch=owner)
     angle = curves.corner_angles(curve)[1 if curve.closed else 0 :]
     curvature = curves.curvatures(curve)
     turns = np.abs(angle) > _TANGENT
@@ -87,7 +101,8 @@ def pieces(
     blends, reach = _blends(curve, angle, wanted, left)
     if pace is not None:
         reach[(np.abs(angle) > SHARPEST_PASSED) & _slower_than_a_stop(blends, pace)] = 0.0
-    return _assemble(curve, blends, reach, np.flatnonzero(needed & (reach == 0.0)) + 1, z)
+    stops = np.flatnonzero(needed & (reach == 0.0)) + 1
+    return _assemble(curve, blends, reach, stops, stretch[kept][first], speed[kept][first], z)
 
 
 def _slower_than_a_stop(blends: Blends, pace: Pace) -> BoolArray:
@@ -110,17 +125,17 @@ def _slower_than_a_stop(blends: Blends, pace: Pace) -> BoolArray:
     return np.asarray(passing > taken(np.full_like(speed, pace.feed)) + 0.5 * pace.tick)
 
 
-def _without_slivers(curve: Curve) -> Curve:
-    """The curve without segments under a micrometre; the next segment starts where they did."""
+def _without_slivers(curve: Curve) -> tuple[Curve, IntArray]:
+    """The curve without segments under a micrometre, and which are left; the next segment starts where they did."""
     kept = (curves.lengths(curve) >= _SHORTEST_SEGMENT) | (np.abs(curve.bulges) > 0.5)
     if kept.all() or np.count_nonzero(kept) < (2 if curve.closed else 1):
-        return curve
+        return curve, np.arange(len(kept))
     first = np.flatnonzero(kept)
     # Each kept segment starts where the one before it ends, so that it takes the room of the slivers in between.
     points = curve.points[np.concatenate([[0], first[:-1] + 1])]
     if not curve.closed:
         points = np.concatenate([points, curve.points[-1:]])
-    return Curve(points=points, bulges=curve.bulges[first], closed=curve.closed)
+    return Curve(points=points, bulges=curve.bulges[first], closed=curve.closed), first
 
 
 def _blends(curve: Curve, angle: Array, wanted: BoolArray, deviation: Array) -> tuple[Blends, Array]:
@@ -180,7 +195,9 @@ def _room(joints: Joints, length: Array, wanted: BoolArray, deviation: Array) ->
     return np.asarray(reach * np.minimum(part[:-1], part[1:]))
 
 
-def _assemble(curve: Curve, blends: Blends, reach: Array, stops: IntArray, z: float) -> tuple[Path, ...]:
+def _assemble(
+    curve: Curve, blends: Blends, reach: Array, stops: IntArray, stretch: IntArray, speed: Array, z: float
+) -> tuple[Path, ...]:
     """The paths between the stops, with the blends at the corners that have a reach."""
     count = len(curve.bulges)
     head, tail = np.concatenate([[0.0], reach]), np.concatenate([reach, [0.0]])
@@ -200,7 +217,34 @@ def _assemble(curve: Curve, blends: Blends, reach: Array, stops: IntArray, z: fl
         )
     )
     places = np.concatenate([start[:, None], np.concatenate([blends.start, np.zeros((1, PIECES, 2))])], axis=1)
-    whole = Path(places.reshape(-1, 2)[kept], heading, curvature, sharpness, length, z)
-    first = np.concatenate([[0], np.cumsum(kept.reshape(count, -1).sum(axis=1))])
+    after = np.append(stretch[1:], stretch[-1:])
+    owner = np.stack([stretch, *[stretch] * (PIECES - 1), after], axis=1).ravel()[kept]
+    slower = np.minimum(speed, np.append(speed[1:], speed[-1:]))
+    fastest = np.stack([speed, *[slower] * PIECES], axis=1).ravel()[kept]
+    whole = Path(places.reshape(-1, 2)[kept], heading, curvature, sharpness, length, owner, fastest, z)
+    halved = (stretch != after) & (tail > 0.0)
+    counts = kept.reshape(count, -1).sum(axis=1)
+    whole = _halved(whole, (np.cumsum(counts) - 2)[halved], after[halved])
+    first = np.concatenate([[0], np.cumsum(counts + halved)])
     edges = [0, *first[stops].tolist(), len(whole.length)]
     return tuple(whole.part(a, b) for a, b in itertools.pairwise(edges))
+
+
+def _halved(path: Path, segments: IntArray, behind: IntArray) -> Path:
+    """The path with some segments (K,) cut in the middle, whose second halves belong to the stretches ``behind``."""
+    if not len(segments):
+        return path
+    half = 0.5 * path.length[segments]
+    points, tangent, _, _ = path.evaluate(segments, half)
+    length, at = path.length.copy(), segments + 1
+    length[segments] = half
+    return Path(
+        np.insert(path.start, at, points[:, :2], axis=0),
+        np.insert(path.heading, at, np.arctan2(tangent[:, 1], tangent[:, 0])),
+        np.insert(path.curvature, at, path.curvature[segments] + path.sharpness[segments] * half),
+        np.insert(path.sharpness, at, path.sharpness[segments]),
+        np.insert(length, at, half),
+        np.insert(path.stretch, at, behind),
+        np.insert(path.speed, at, path.speed[segments]),
+        path.z,
+    )

@@ -22,6 +22,8 @@ class Path:
         curvature: (M,) 1/m there, positive to the left.
         sharpness: (M,) 1/m^2, the change of the curvature per length; 0 for lines and arcs.
         length: (M,) m, > 0.
+        stretch: (M,) of a cut that each segment belongs to.
+        speed: (M,) m/s, not to be exceeded in each segment; infinite where only the limits of a move count.
         z: m, the height of the plane.
     """
 
@@ -30,12 +32,18 @@ class Path:
     curvature: Array
     sharpness: Array
     length: Array
+    stretch: IntArray
+    speed: Array
     z: float
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "start", readonly(self.start, columns=2))
         for name in ("heading", "curvature", "sharpness", "length"):
             object.__setattr__(self, name, readonly(getattr(self, name)))
+        stretch, speed = np.array(self.stretch, dtype=np.int64), np.array(self.speed, dtype=np.float64)
+        stretch.flags.writeable = speed.flags.writeable = False
+        object.__setattr__(self, "stretch", stretch)
+        object.__setattr__(self, "speed", speed)
 
     @property
     def total(self) -> float:
@@ -49,9 +57,8 @@ class Path:
 
     def part(self, first: int, end: int) -> Path:
         """The segments from ``first`` to before ``end``."""
-        columns = (self.start, self.heading, self.curvature, self.sharpness, self.length)
-        start, heading, curvature, sharpness, length = (column[first:end] for column in columns)
-        return Path(start, heading, curvature, sharpness, length, self.z)
+        columns = {field.name: getattr(self, field.name) for field in fields(Path) if field.name != "z"}
+        return Path(**{name: column[first:end] for name, column in columns.items()}, z=self.z)
 
     def evaluate(self, segment: IntArray, distance: Array) -> tuple[Array, Array, Array, Array]:
         """Position and its derivatives by arc length at ``distance`` m from the start of the given segments.
@@ -93,6 +100,8 @@ def from_curve(curve: Curve, z: float) -> Path:
         curvature=curves.curvatures(curve),
         sharpness=np.zeros(len(curve.bulges)),
         length=curves.lengths(curve),
+        stretch=np.zeros(len(curve.bulges), dtype=np.int64),
+        speed=np.full(len(curve.bulges), np.inf),
         z=z,
     )
 

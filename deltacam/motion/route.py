@@ -74,11 +74,9 @@ class Route:
         """The given paths, at one height, each a move within its limits."""
         counts = np.array([len(path.length) for path, _ in moves])
         columns = np.array([(one.speed, one.acceleration, one.chord) for _, one in moves])
-        return cls(
-            join([path for path, _ in moves]),
-            np.concatenate([[0], np.cumsum(counts)]),
-            *np.repeat(columns, counts, axis=0).T,
-        )
+        path, (speed, acceleration, chord) = join([path for path, _ in moves]), np.repeat(columns, counts, axis=0).T
+        first = np.concatenate([[0], np.cumsum(counts)])
+        return cls(path, first, np.minimum(speed, path.speed), acceleration, chord)
 
     def locate(self, move: IntArray, distance: Array) -> tuple[IntArray, Array]:
         """The segments of moves (N,) that hold places, and how far into them these lie.

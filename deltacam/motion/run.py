@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from deltacam.model import Array, Held
+from deltacam.model import Array, Held, IntArray
 from deltacam.motion import explain
 from deltacam.motion.jerk import limited
 from deltacam.motion.law import Law, TimeLaw
 from deltacam.motion.parametrize import solve
 from deltacam.motion.route import Grid, Route
 from deltacam.motion.rows import Rows
-from deltacam.motion.sample import chord_deviation, sample
+from deltacam.motion.sample import chord_deviation, sample, stretches
 from deltacam.motion.tempo import Tempo
 
 if TYPE_CHECKING:
@@ -31,12 +31,14 @@ class Run(NamedTuple):
 
     Attributes:
         q: (N, 3) rad, the setpoint at every tick but that at which it ends.
+        stretch: (N,) of the cut in which the setpoint lies, as `Path.stretch` numbers them.
         duration: s, before it is stretched to end on a tick.
         held: for how long each of `explain.NAMES` binds, s.
         without: how long the move would take without each of `explain.KINDS`, s; empty where nobody asked.
     """
 
     q: Array
+    stretch: IntArray
     duration: float
     held: Array
     without: Array
@@ -44,8 +46,9 @@ class Run(NamedTuple):
 
 def joined(runs: Sequence[Run]) -> Run:
     """The runs of moves that follow each other as one."""
-    q, durations, held, without = zip(*runs, strict=True)
-    return Run(np.concatenate(q), sum(durations), np.sum(held, axis=0), np.sum(without, axis=0))
+    q, stretch, durations, held, without = zip(*runs, strict=True)
+    rows = np.concatenate(q), np.concatenate(stretch)
+    return Run(*rows, sum(durations), np.sum(held, axis=0), np.sum(without, axis=0))
 
 
 def run(route: Route, robot: Robot, *, what_if: bool = False) -> list[Run]:
@@ -76,7 +79,8 @@ def run(route: Route, robot: Robot, *, what_if: bool = False) -> list[Run]:
     without = np.zeros((len(held), 0))
     if what_if:
         without = explain.without(route, grid, rows, robot, law.durations, kinds)
-    return [Run(*one) for one in zip(setpoints, law.durations.tolist(), held, without, strict=True)]
+    stretch = stretches(route.path, law, robot.controller.rate_hz)
+    return [Run(*one) for one in zip(setpoints, stretch, law.durations.tolist(), held, without, strict=True)]
 
 
 def _slower(route: Route, grid: Grid, law: Law, robot: Robot, setpoints: tuple[Array, ...]) -> Array:

@@ -35,6 +35,16 @@ def sample(path: Path, law: Law, robot: Robot) -> tuple[Array, ...]:
     return tuple(np.split(q, first[1:]))
 
 
+def stretches(path: Path, law: Law, rate: float) -> tuple[IntArray, ...]:
+    """The stretch of the cut in which every setpoint of every move lies, (N,) each, as `sample` returns them."""
+    counts = tick_counts(law, rate)
+    first = np.cumsum(counts) - counts
+    move = np.repeat(np.arange(len(counts)), counts)
+    tick = np.arange(len(move)) - first[move]
+    segment, _ = path.locate(law.at(move, tick / counts[move] * law.durations[move]))
+    return tuple(np.split(path.stretch[segment], first[1:]))
+
+
 def chord_deviation(
     path: Path, law: Law, robot: Robot, setpoints: tuple[Array, ...], ends: Array, follows: BoolArray | None = None
 ) -> tuple[Array, Array]:

@@ -22,7 +22,7 @@ import numpy as np
 from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.machine import cores
-from deltacam.model import Corner, Curve
+from deltacam.model import Array, Corner, Curve, IntArray
 from deltacam.motion.corners import Pace, pieces
 from deltacam.motion.parametrize import UndrivableError, load_solver
 from deltacam.motion.path import Path
@@ -45,6 +45,8 @@ class Drawn(NamedTuple):
     """A curve that is still to be made drivable, with what `corners.pieces` takes; ``z`` m is the height."""
 
     curve: Curve
+    stretch: IntArray
+    speed: Array
     corner: Corner
     deviation: float
     pace: Pace | None
@@ -59,6 +61,8 @@ class Drawn(NamedTuple):
             ramps=self.pace is not None,
             z=self.z,
             pace=self.pace,
+            stretch=self.stretch,
+            speed=self.speed,
         )
 
 

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from deltacam.errors import InfeasibleError, ProcessError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Block, BlockKind, Cut, Held, IntArray, Mode, Operation, Placement, Process
+from deltacam.model import Array, BlockKind, Curve, Cut, Mode, Operation, Placement, Process
 from deltacam.motion.corners import Pace
-from deltacam.motion.path import Path, straight
+from deltacam.motion.parts import parts
+from deltacam.motion.power import powers
 from deltacam.motion.route import Limits
-from deltacam.motion.run import Run, held_along
-from deltacam.motion.schedule import Drawn, Move, schedule
+from deltacam.motion.schedule import Drawn, Move
+from deltacam.motion.tape import NUMBER, Setpoints, Tape
 from deltacam.units import to_um
 
 if TYPE_CHECKING:
@@ -25,27 +26,7 @@ if TYPE_CHECKING:
 FIT_ALLOWANCE: Final = 2e-6
 """Part of the tolerance, m, that is kept for tracing the kerf path; nothing is where there is no kerf."""
 
-_HERE: Final = 1e-9
 _ROUNDING: Final = 1e-9
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Setpoints:
-    """What the machine is to do at every tick.
-
-    Attributes:
-        q: (N, 3) rad.
-        power: (N,) of the laser's rated power.
-        block: (N,) index into ``blocks``.
-        blocks: in order, together covering every tick once.
-        held: what holds back the motion along every contour.
-    """
-
-    q: Array
-    power: Array
-    block: IntArray
-    blocks: tuple[Block, ...]
-    held: tuple[Held, ...] = ()
 
 
 def plan_motion(
@@ -81,7 +62,11 @@ def plan_motion(
         RobotError: a move leaves the reach.
     """
     tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error, mode=mode)
-    return tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
+    found = tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
+    if mode is not Mode.CUT:
+        return found
+    kinds = [block.kind for block in found.blocks]
+    return replace(found, power=powers(found.q, found.block, kinds, robot=robot, process=process))
 
 
 def moves_of(
@@ -94,29 +79,72 @@ def moves_of(
 
 def _taped(
     cuts: Sequence[Cut], *, robot: Robot, process: Process, placement: Placement, drawing_error: float, mode: Mode
-) -> _Tape:
+) -> Tape:
     """The tape of what `plan_motion` plans."""
     deviation = _left_for_corners(process.tolerance, drawing_error + (FIT_ALLOWANCE if process.kerf > 0.0 else 0.0))
     rapid = rapid_limits(robot)
     ways = {operation: _way(operation, robot, process) for operation in {cut.operation for cut in cuts}}
     # Under cubic interpolation the move after a setpoint bends the one before it: a rest keeps rapids out of cuts.
     apart = 0 if robot.controller.interpolation == "linear" else 1
-    tape = _Tape(robot, np.array(robot.workspace.park), placement.z)
+    tape = Tape(robot, np.array(robot.workspace.park), placement.z)
     tape.rest(BlockKind.RAPID, ticks=1)
-    for cut in cuts:
-        curve = curves.transform(cut.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
-        tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
+    holes = _first_pierces(cuts) if process.pre_pierce else {}
+    for index, cut in enumerate(cuts):
         way = ways[cut.operation]
+        limits = way.limits if cut.feed is None else working_limits(robot, process, cut.feed)
         power = way.power if mode is Mode.CUT else 0.0
-        tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=cut)
-        tape.rest(BlockKind.RAPID, ticks=0 if way.pierce else apart)
-        pace = _pace(robot, way.limits, (*curve.points[0], placement.z))
-        drawn = Drawn(curve, process.corner, deviation, pace, placement.z)
-        tape.run(drawn, curve.ends[-1], way.limits, way.kind, power=power, cut=cut, where=cut.where)
-        tape.rest(BlockKind.RAPID, ticks=apart)
+        for hole in holes.get(index, ()):
+            tape.travel(_in_machine(hole, placement).points[0], rapid, where=f"the way to contour {hole.contour}")
+            tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=hole)
+        _put(tape, cut, process, placement, _Own(way, limits, power, deviation, bool(holes), apart))
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
     return tape
+
+
+class _Own(NamedTuple):
+    """What holds for one cut: how it is run, within what, and for how many ticks the tool rests around its parts."""
+
+    way: _Way
+    limits: Limits
+    power: float
+    deviation: float
+    is_pierced: bool
+    apart: int
+
+
+def _put(tape: Tape, cut: Cut, process: Process, placement: Placement, own: _Own) -> None:
+    """Put a cut on the tape: the way there, and every part of it from rest to rest."""
+    robot, rapid = tape.robot, rapid_limits(tape.robot)
+    every = list(parts(cut))
+    for number, part in enumerate(every):
+        curve = curves.transform(part.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
+        before, after = (BlockKind.TAB if inside else BlockKind.RAPID for inside in (number, part is not every[-1]))
+        if not part.is_tab:
+            pierce = 0 if own.is_pierced and number == 0 else own.way.pierce
+            tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
+            tape.rest(BlockKind.RAPID, ticks=0 if number else _ticks(cut.wait, robot))
+            tape.rest(BlockKind.PIERCE, ticks=pierce, power=own.power, cut=cut)
+            tape.rest(before, ticks=0 if pierce else own.apart, cut=cut if number else None)
+        pace = _pace(robot, own.limits, (*curve.points[0], placement.z))
+        drawn = Drawn(curve, part.stretch, part.speed, process.corner, own.deviation, pace, placement.z)
+        tape.work(drawn, own.limits, power=own.power, cut=cut)
+        # A lead-out behind a cut without an overcut may be passed within a tick: then its end must not count as cut.
+        beside = part.stretch[-1] == NUMBER[BlockKind.LEAD_OUT] and process.overcut == 0.0
+        tape.rest(BlockKind.LEAD_OUT, ticks=1 if beside else 0, cut=cut)
+        tape.rest(after, ticks=own.apart, cut=None if part is every[-1] else cut)
+
+
+def _first_pierces(cuts: Sequence[Cut]) -> dict[int, list[Cut]]:
+    """All that is pierced before the first cut, by the index of that cut, which follows what is engraved."""
+    cutting = [index for index, cut in enumerate(cuts) if cut.operation is Operation.CUT]
+    return {cutting[0]: [cuts[index] for index in cutting]} if cutting else {}
+
+
+def _in_machine(cut: Cut, placement: Placement) -> Curve:
+    """The first stretch of a cut in the machine frame."""
+    curve = cut.way[0].curve if cut.way else cut.curve
+    return curves.transform(curve, rotation=placement.rotation, shift=(placement.x, placement.y))
 
 
 def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Placement) -> Setpoints:
@@ -133,7 +161,7 @@ def plan_frame(corners: Array, *, robot: Robot, process: Process, placement: Pla
     """
     box = curves.transform(curves.polygon(corners), rotation=placement.rotation, shift=(placement.x, placement.y))
     rapid, tracing = rapid_limits(robot), working_limits(robot, process, process.feed)
-    tape = _Tape(robot, np.array(robot.workspace.park), placement.z)
+    tape = Tape(robot, np.array(robot.workspace.park), placement.z)
     tape.rest(BlockKind.RAPID, ticks=1)
     tape.travel(box.points[0], rapid, where="the way to the frame")
     for corner in np.roll(box.points, -1, axis=0):
@@ -174,9 +202,8 @@ def engraving(process: Process) -> tuple[float, float]:
 
 
 class _Way(NamedTuple):
-    """How a cut is run: the kind of its blocks, its limits, its power, and for how many ticks it is pierced before."""
+    """How a cut is run: its limits, its power, and for how many ticks it is pierced before."""
 
-    kind: BlockKind
     limits: Limits
     power: float
     pierce: int
@@ -196,9 +223,14 @@ def _way(operation: Operation, robot: Robot, process: Process) -> _Way:
     """How cuts of an operation are run."""
     if operation is Operation.ENGRAVE:
         feed, power = engraving(process)
-        return _Way(BlockKind.ENGRAVE, working_limits(robot, process, feed), power, 0)
-    pierce = math.ceil(process.pierce_time * robot.controller.rate_hz - _ROUNDING)
-    return _Way(BlockKind.CUT, working_limits(robot, process, process.feed), process.power, pierce)
+        return _Way(working_limits(robot, process, feed), power, 0)
+    pierce = _ticks(process.pierce_time, robot)
+    return _Way(working_limits(robot, process, process.feed), process.power, pierce)
+
+
+def _ticks(time: float, robot: Robot) -> int:
+    """The fewest ticks that take so many seconds."""
+    return math.ceil(time * robot.controller.rate_hz - _ROUNDING)
 
 
 def _left_for_corners(tolerance: float, error: float) -> float:
@@ -213,104 +245,3 @@ def _left_for_corners(tolerance: float, error: float) -> float:
             "from ellipses and from ends that do not quite meet",
         )
     return max(0.0, left)
-
-
-class _Rest(NamedTuple):
-    """Ticks at one place, (2,) m."""
-
-    place: Array
-    ticks: int
-
-
-class _Step(NamedTuple):
-    """What a rest or a move is for: the kind of its block, the laser's power, and the cut that it belongs to."""
-
-    motion: _Rest | Move
-    kind: BlockKind
-    power: float
-    cut: Cut | None
-
-
-@dataclass(slots=True, eq=False)
-class _Tape:
-    """The program as it grows: moves and rests are put behind each other, and run at the end."""
-
-    robot: Robot
-    place: Array
-    z: float
-    _steps: list[_Step] = field(default_factory=list)
-
-    def rest(self, kind: BlockKind, *, ticks: int, power: float = 0.0, cut: Cut | None = None) -> None:
-        """Hold the present place for a number of ticks; none is nothing."""
-        if ticks:
-            self._steps.append(_Step(_Rest(self.place, ticks), kind, power, cut))
-
-    def travel(self, end: Array, limits: Limits, *, where: str) -> None:
-        """Go straight to ``end``, (2,) m, with the laser off; nothing where the tool is there."""
-        if np.hypot(*(end - self.place)) > _HERE:
-            self.run(straight(self.place, end, self.z), end, limits, BlockKind.RAPID, where=where)
-
-    def run(
-        self,
-        path: Path | Drawn,
-        end: Array,
-        limits: Limits,
-        kind: BlockKind,
-        *,
-        where: str,
-        power: float = 0.0,
-        cut: Cut | None = None,
-    ) -> None:
-        """Run along ``path`` to its ``end``, (2,) m, from rest to rest."""
-        self._steps.append(_Step(Move(path, limits, where), kind, power, cut))
-        self.place = end
-
-    def moves(self) -> tuple[list[tuple[Move, bool]], int]:
-        """The moves, each with whether it belongs to a cut, and the ticks of all rests."""
-        moves = [(step.motion, step.cut is not None) for step in self._steps if isinstance(step.motion, Move)]
-        return moves, sum(step.motion.ticks for step in self._steps if isinstance(step.motion, _Rest))
-
-    def setpoints(self, *, jobs: int | None, what_if: bool | None, progress: Callable[[int, int], None]) -> Setpoints:
-        """Everything that was put on the tape, at every tick."""
-        moves = [step for step in self._steps if isinstance(step.motion, Move)]
-        cuts = np.cumsum([step.cut is not None for step in moves])
-        total = int(cuts[-1]) if len(cuts) else 0
-        progress(0, total)
-        runs = schedule(
-            [step.motion for step in moves if isinstance(step.motion, Move)],
-            self.robot,
-            jobs=jobs,
-            what_if=what_if,
-            progress=lambda done: progress(int(cuts[done - 1]), total),
-        )
-        rests = [(*step.motion.place, self.z) for step in self._steps if isinstance(step.motion, _Rest)]
-        held, moved = iter(self.robot.inverse(np.array(rests).reshape(-1, 3))), iter(runs)
-        q, power, blocks = [], [], list[Block]()
-        ticks = 0
-        for step in self._steps:
-            rows = next(moved).q if isinstance(step.motion, Move) else np.tile(next(held), (step.motion.ticks, 1))
-            q.append(rows)
-            power.append(np.full(len(rows), step.power))
-            _append(blocks, step, ticks, len(rows))
-            ticks += len(rows)
-        block = np.repeat(np.arange(len(blocks)), [one.last - one.first + 1 for one in blocks])
-        return Setpoints(np.concatenate(q), np.concatenate(power), block, tuple(blocks), _held(moves, runs))
-
-
-def _held(steps: Sequence[_Step], runs: Sequence[Run]) -> tuple[Held, ...]:
-    """What holds back the motion along every contour, the moves of each taken together."""
-    by_contour: dict[int, list[Run]] = {}
-    for step, run in zip(steps, runs, strict=True):
-        if step.cut is not None:
-            by_contour.setdefault(step.cut.contour, []).append(run)
-    return tuple(held_along(contour, found) for contour, found in by_contour.items())
-
-
-def _append(blocks: list[Block], step: _Step, first: int, ticks: int) -> None:
-    """Put the ticks of a step into the last block where they continue it, else into a new one."""
-    cut, last = step.cut, first + ticks - 1
-    contour, layer, handles = (cut.contour, cut.layer, cut.handles) if cut else (None, "", ())
-    if blocks and blocks[-1].kind is step.kind and blocks[-1].contour == contour:
-        blocks[-1] = replace(blocks[-1], last=last)
-    else:
-        blocks.append(Block(step.kind, first, last, contour, layer, handles))

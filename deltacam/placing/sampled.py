@@ -7,7 +7,7 @@ path of the cuts, seen from the part, stays what it is.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -93,7 +93,7 @@ def _straight(start: Array, end: Array, z: float) -> Path:
 
 def _moved(path: Path, by: Placement) -> Path:
     start = path.start @ _turn(by.rotation).T + (by.x, by.y)
-    return Path(start, path.heading + by.rotation, path.curvature, path.sharpness, path.length, path.z)
+    return replace(path, start=start, heading=path.heading + by.rotation)
 
 
 def _end(path: Path) -> Array:

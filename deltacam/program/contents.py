@@ -114,6 +114,7 @@ def to_program(meta: metas.Meta, rows: Rows, problems: Iterable[str], *, name: s
             q=rows.q,
             power=rows.power,
             block=rows.block,
+            from_contour=meta.from_contour,
             integrity=tuple(found),
         )
     except ValueError as problem:

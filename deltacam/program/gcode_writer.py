@@ -26,6 +26,7 @@ _REST: Final = 0.5e-9  # m; a move that is not longer is a wait
 _LEAST_FEED: Final = 1e-3  # mm/min; no controller takes 0
 _LEAST_POWER: Final = 1e-3  # of the S word; less would be off
 _LONGEST_NAME: Final = 60
+_MOST_LEVELS: Final = 8  # that are listed
 _HARMLESS: Final = re.compile(r"[^A-Za-z0-9 _.+-]")
 _LINE: Final = {
     0: "G0 X%s Y%s F%s",
@@ -82,7 +83,9 @@ def _to_sheet(base: Array, placement: Placement) -> Array:
 
 
 def _head(program: Program) -> list[str]:
-    levels = ", ".join(f"S{_power(level)}" for level in np.unique(program.power).tolist() if level)
+    words = [f"S{_power(level)}" for level in np.unique(program.power).tolist() if level]
+    # Where the power follows the speed there are hundreds, and controllers take lines of some 250 characters.
+    levels = ", ".join(words) if len(words) <= _MOST_LEVELS else f"{words[0]} to {words[-1]}"
     return [
         f"(motion of {_harmless(program.drawing.file)}, made by deltacam)",
         f"(robot {_harmless(program.robot.name)}, process {_harmless(program.process.name)})",

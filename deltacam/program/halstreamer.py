@@ -57,7 +57,7 @@ def write(program: Program, stream: BinaryIO) -> None:
     levels = np.unique(program.power[program.power != 0.0])
     if len(levels) > 1:
         shown = ", ".join(f"{level:g}" for level in levels[:4].tolist())
-        hint = "make one program per power, with plan --layer and --ignore-layer"
+        hint = "make one program per power, with plan --layer and --ignore-layer; a power law cannot be played here"
         raise ProgramError(f"the laser can only be on or off here, and the program has powers of {shown}", hint=hint)
     if program.power[-1] != 0.0:
         raise ProgramError("the laser is on in the last row, and would stay on", hint="plan the drawing again")

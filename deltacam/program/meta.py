@@ -16,7 +16,18 @@ from deltacam.robot.meta import from_meta as robot_from_meta
 from deltacam.robot.meta import to_meta as robot_to_meta
 from deltacam.robot.robot import Robot
 
-KEYS: Final = ("blocks", "drawing", "mode", "placement", "process", "rate_hz", "robot", "rows", "sha256")
+KEYS: Final = (
+    "blocks",
+    "drawing",
+    "from_contour",
+    "mode",
+    "placement",
+    "process",
+    "rate_hz",
+    "robot",
+    "rows",
+    "sha256",
+)
 _BLOCK_KEYS: Final = tuple(field.name for field in fields(Block))
 _DRAWING_KEYS: Final = ("accept_loss", "file", "ignored_layers", "joining_m", "layers", "metres_per_unit", "sha256")
 _PLACEMENT_KEYS: Final = ("rotation_rad", "x_m", "y_m", "z_m")
@@ -32,6 +43,7 @@ class Meta(NamedTuple):
     drawing: DrawingRef
     mode: Mode
     blocks: tuple[Block, ...]
+    from_contour: int | None
     rate_hz: float
     rows: int
     sha256: str
@@ -43,6 +55,7 @@ def to_meta(program: Program, *, sha256: str) -> dict[str, Any]:
     return {
         "blocks": [_block_to_meta(block) for block in program.blocks],
         "drawing": _drawing_to_meta(program.drawing),
+        "from_contour": program.from_contour,
         "mode": program.mode.value,
         "placement": {
             "rotation_rad": placement.rotation,
@@ -76,6 +89,7 @@ def from_meta(values: object, where: str) -> Meta:
         drawing=_drawing(top.section("drawing", _DRAWING_KEYS)),
         mode=top.choice("mode", Mode),
         blocks=_blocks(top),
+        from_contour=None if top.raw("from_contour") is None else top.whole("from_contour", 1),
         rate_hz=top.number("rate_hz", 0.0, 1e9),
         rows=top.whole("rows", 0),
         sha256=top.text("sha256"),

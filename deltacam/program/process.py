@@ -181,7 +181,7 @@ def _maybe(found: Fields, key: str, kind: type[_Part], read: Callable[[Fields], 
 def _each(found: Fields, key: str, kind: type[_Part], read: Callable[[Fields], _Part]) -> tuple[_Part, ...]:
     where = f"{found.where}, {key}"
     items = enumerate(found.items(key))
-    return tuple(read(Fields(values, f"{where}, item {index}", _keys(kind))) for index, values in items)
+    return tuple(read(Fields(values, f"{where} {index}", _keys(kind))) for index, values in items)
 
 
 def _word(found: Fields, key: str, words: tuple[_Word, ...]) -> _Word:

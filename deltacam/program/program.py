@@ -82,6 +82,7 @@ class Program:
         q: joint angles, (N, 3) rad, N >= 1; read-only.
         power: of the laser's rated power, 0 = off, (N,); read-only.
         block: index into ``blocks``, (N,); read-only.
+        from_contour: the contour that it goes on with after a stop; None where it begins with the first one.
         integrity: what is wrong with the file that it was read from, one message each; empty for a new program.
 
     Raises:
@@ -98,6 +99,7 @@ class Program:
     q: Array
     power: Array
     block: IntArray
+    from_contour: int | None = None
     integrity: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

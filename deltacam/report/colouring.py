@@ -1,4 +1,4 @@
-"""The ways in which the path of the tool is coloured: by speed, by deviation, by the nearest limit."""
+"""The ways of colouring the path of the tool: by speed, by deviation, by energy, by the nearest limit, by kind."""
 
 from __future__ import annotations
 
@@ -8,15 +8,19 @@ from typing import Final
 
 import numpy as np
 
-from deltacam.model import Array, IntArray
+from deltacam.model import Array, BlockKind, IntArray
 from deltacam.report import palette
+from deltacam.report.bands import BURNT, bands
 from deltacam.report.binding import LIMITS, NEAR, Binding, limit_of
 from deltacam.report.palette import Ink
 from deltacam.report.picture import colours_of, speed_colours
 from deltacam.report.stretches import Choice, largest, most_unusual
 from deltacam.units import to_mm, to_um
+from deltacam.verification.evidence import KINDS, Evidence
 
 _LEVELS: Final = 8  # of deviation, up to the limit
+_ENERGIES: Final = (0.5, 0.8, 0.95, 1.05, 1.25, 1.6, 2.0, 3.0, 5.0)  # times the usual one, between the levels
+_USUAL: Final = 4  # the level that holds 1; 0 is where nothing is known
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,6 +67,36 @@ def by_deviation(deviation: Array, tolerance: float, limit: float) -> Colouring:
     labels = ["", *(f"{step * (i + 1):.3g}" for i in range(_LEVELS)), over]
     inks = [palette.BINDING[-1], *palette.deviations(_LEVELS), palette.OVER]
     return Colouring("Deviation", "deviation up to, µm", inks, labels, largest(colour))
+
+
+def by_energy(energy: Array, usual_j_mm: float) -> Colouring:
+    """The energy of the millimetre about every step, (M,) times that at the feed, nan where it is not known.
+
+    Args:
+        energy: as `verification.energy.line_energy` gives it.
+        usual_j_mm: that at the feed, J/mm; 0 where nobody says what the laser has.
+    """
+    known = np.isfinite(energy)
+    colour = np.where(known, 1 + np.searchsorted(_ENERGIES, np.where(known, energy, 1.0)), 0)
+    labels = ["", *(f"{level:g}" for level in _ENERGIES), "more"]
+    inks = [palette.BINDING[-1], *palette.energies(_USUAL - 1, len(_ENERGIES) - _USUAL + 1)]
+    unit = f"1 is {usual_j_mm:.3g} J/mm" if usual_j_mm else "1 is that at the feed"
+    found = most_unusual(np.where(known, colour, _USUAL), float(_USUAL))
+    some = largest(known.astype(np.int64))
+
+    def choose(first: IntArray) -> IntArray:
+        return np.where(some(first) == 1, found(first), 0)
+
+    return Colouring("Energy", f"energy per mm up to, {unit}", inks, labels, choose)
+
+
+def by_kind(evidence: Evidence) -> Colouring:
+    """What is done at every step with the laser on."""
+    kinds = {BlockKind.LEAD_IN: 1, BlockKind.LOOP: 2, BlockKind.OVERCUT: 3, BlockKind.ENGRAVE: 4}
+    colour = np.array([kinds.get(kind, 0) for kind in KINDS])[evidence.kind[:-1]]
+    there = set(colour[np.isin(bands(evidence), BURNT)].tolist())
+    labels = [name if index in there else "" for index, name in enumerate(palette.KINDS)]
+    return Colouring("Kind", "with the laser on", list(palette.KINDS.values()), labels, largest(colour), ramp=False)
 
 
 def by_limit(nearest: Binding) -> Colouring:

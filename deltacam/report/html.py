@@ -6,12 +6,14 @@ from collections.abc import Sequence
 
 from deltacam.model import Check, Drawing, Report
 from deltacam.program.program import Program
-from deltacam.report import held_back, palette, sections
+from deltacam.report import held_back, kerf, palette, sections
+from deltacam.report.escaping import shown
 from deltacam.report.page import frame
 from deltacam.report.payload import payload, to_script
-from deltacam.report.picture import View, draw, shown
+from deltacam.report.picture import draw
 from deltacam.report.slots import slots
 from deltacam.report.tables import table
+from deltacam.report.view import View
 from deltacam.robot.robot import Robot
 from deltacam.verification.evidence import Evidence, gather
 
@@ -56,12 +58,15 @@ def to_html(
 
 def _body(report: Report, evidence: Evidence, drawing: Drawing | None, figures: str) -> str:
     held = table(held_back.HEADS, held_back.rows(report.held)) if report.held else ""
+    leaves = kerf.rows(report.kerf, report.sizes)
+    left = table(kerf.HEADS, leaves, numbers=range(3, 7)) if leaves else ""
     parts = (
         ("Checks", sections.checks(report.checks, evidence)),
         ("Findings", sections.findings(report)),
         ("What limits the speed", held),
         ("Contours", sections.contours(evidence, drawing)),
         ("Sizes", sections.sizes(report.sizes)),
+        ("What the kerf leaves", left),
         ("Entities of the drawing", sections.ledger(report.ledger)),
         ("All figures", table(("figure", "value"), sections.figures(report.summary))),
     )

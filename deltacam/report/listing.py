@@ -35,11 +35,25 @@ def to_dict(report: Report) -> dict[str, Any]:
                 "offset_um": one.offset * 1e6,
                 "edge_um": one.edge * 1e6,
                 "place": one.place,
+                "exact_mm2": one.exact * 1e6,
+                "drawn_box_mm": [side * 1e3 for side in one.drawn_box],
+                "left_box_mm": [side * 1e3 for side in one.box],
             }
             for one in report.sizes
         ],
         "held": [
             {"contour": one.contour, "time_s": one.time, "bound_s": dict(one.bound), "without_s": dict(one.without)}
             for one in report.held
+        ],
+        "kerf": [
+            {
+                "contour": one.contour,
+                "paths": one.paths,
+                "meets": list(one.meets),
+                "inner_corners": one.corners,
+                "depth_um": one.depth * 1e6,
+                "place": one.place,
+            }
+            for one in report.kerf
         ],
     }

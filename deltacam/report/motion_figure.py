@@ -39,6 +39,8 @@ class Row(NamedTuple):
         lines: what is drawn in it.
         limits: each with its colour.
         low: the lower end of the range where it is not that of the limits.
+        high: the upper end, likewise.
+        ticks: how numbers beside it are written, as d3 formats them.
     """
 
     title: str
@@ -47,10 +49,17 @@ class Row(NamedTuple):
     lines: Sequence[Line]
     limits: Sequence[tuple[float, palette.Ink]]
     low: float | None = None
+    high: float | None = None
+    ticks: str = "~s"
 
 
-def motion_figure(evidence: Evidence, motion: Motion) -> Json:
+def motion_figure(evidence: Evidence, motion: Motion, energy: Array | None = None) -> Json:
     """The rows of the charts over time, the nearest limit first.
+
+    Args:
+        evidence: of the program.
+        motion: of the same.
+        energy: the energy of the millimetre about every tick, (N,) times that at the feed; None where nothing is cut.
 
     Returns:
         ``layout``; ``height`` in pixels; ``lines``: which series is drawn against which axis, and how; ``strip``: the
@@ -59,6 +68,8 @@ def motion_figure(evidence: Evidence, motion: Motion) -> Json:
     rows = [Row("Nearest limit, % used", "", 58.0, [], [(100.0, palette.LIMIT)], 0.0)]
     if len(motion.speed):
         rows.append(_tool(evidence, motion))
+    if energy is not None:
+        rows += _laser(evidence, energy)
     rows += _joints(evidence.robot, motion)
     end = max(evidence.program.duration, 1.0 / evidence.rate)
     return _stacked(rows, "time, s", end)
@@ -79,6 +90,17 @@ def _tool(evidence: Evidence, motion: Motion) -> Row:
     limits = [(limit, palette.LIMIT), (feed, palette.BINDING[0])]
     note = f"{worst:.4g} of {limit:.4g}"
     return Row("Tool speed, mm/s", note, 110.0, [Line("speed", palette.TOOL, worst)], limits, 0.0)
+
+
+def _laser(evidence: Evidence, energy: Array) -> list[Row]:
+    power, most = 100.0 * float(evidence.program.power.max()), float(np.nanmax(energy))
+    usual = [(1.0, palette.ZERO)]
+    note = f"{float(np.nanmin(energy)):.3g} to {most:.3g}"
+    title = "Energy per mm, times that at the feed"
+    rows = [Row(title, note, 80.0, [Line("energy", palette.TOOL, most)], usual, 0.0, high=most, ticks="~g")]
+    if evidence.program.process.power_law is not None:
+        rows.append(Row("Laser power, %", "", 60.0, [Line("power", palette.TOOL, power)], [], 0.0))
+    return rows
 
 
 def _joints(robot: Robot, motion: Motion) -> list[Row]:
@@ -131,7 +153,9 @@ def _stacked(rows: Sequence[Row], title: str, end: float) -> Json:
     top, drawn = inner, []
     for index, row in enumerate(rows):
         domain = [(top - row.height) / inner, top / inner]
-        figure[_name(index, "yaxis")] = axis(range=_range(row), domain=domain, nticks=5, tickformat="~s", anchor="x")
+        figure[_name(index, "yaxis")] = axis(
+            range=_range(row), domain=domain, nticks=5, tickformat=row.ticks, anchor="x"
+        )
         figure["shapes"] += [_level(index, value, ink) for value, ink in row.limits]
         figure["annotations"] += [_word(row.title, 0, domain[1], strong=True), _word(row.note, 1, domain[1])]
         drawn += [{"series": one.series, "axis": _name(index, "y"), "color": one.ink.light} for one in row.lines]
@@ -150,7 +174,7 @@ def _range(row: Row) -> list[float]:
     worst = max((line.worst for line in row.lines), default=0.0)
     far = max(map(abs, bounds), default=worst)
     reach = min(worst, _CUT_OFF * far)
-    high = max([reach, *bounds])
+    high = max([reach, *bounds]) if row.high is None else max(row.high, *bounds)
     low = row.low if row.low is not None else min([-reach, *bounds])
     room = 0.08 * max(high - low, 1e-9)
     return [low if row.low is not None else low - room, high + room]

@@ -14,6 +14,10 @@ import numpy as np
 _VIRIDIS: Final = ("440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725")
 _CALM_LIGHT: Final = ("a9bfdd", "7d8fd0", "7b4fb5", "5c1067")
 _CALM_DARK: Final = ("44577a", "7078cc", "bd74dd", "ffc4f2")
+_COLD_LIGHT: Final = ("0b4a9e", "2f7fd0", "79b4e6")
+_COLD_DARK: Final = ("7cc0ff", "4a90dd", "34689f")
+_HOT_LIGHT: Final = ("f0b44c", "e0761c", "c22f1d", "6e0d25")
+_HOT_DARK: Final = ("8a6420", "d07a2a", "ff6a4d", "ffc2c2")
 
 
 class Ink(NamedTuple):
@@ -45,10 +49,39 @@ BINDING: Final = (
     Ink("#a7b0ba", "#5d6670"),
 )
 """One for each of `binding.LIMITS`, and the last for none of them."""
+_MIDDLE: Final = Ink("#9aa88f", "#5d6b56")
 OVER: Final = Ink("#e5202e", "#ff4d4d")
 """Of what is beyond its limit."""
+PAPER: Final = Ink("#ffffff", "#151b23")
+"""Around marks that lie on lines."""
+TAB: Final = JOINTS[1]
+KINDS: Final = {
+    "cut": Ink("#0969da", "#4493f8"),
+    "lead-in": Ink("#1a7f37", "#3fb950"),
+    "loop": Ink("#bf3989", "#f778ba"),
+    "overcut": Ink("#8250df", "#ab7df8"),
+    "engraved": Ink("#9a6700", "#d4a72c"),
+}
+"""Of what is done with the laser on."""
 
-_FIXED: Final = (TEXT, STRONG, GRID, ZERO, LINE, RAPID, PART, SHEET, LIMIT, TOOL, ANGLE, *JOINTS, *BINDING, OVER)
+_FIXED: Final = (
+    TEXT,
+    STRONG,
+    GRID,
+    ZERO,
+    LINE,
+    RAPID,
+    PART,
+    SHEET,
+    LIMIT,
+    TOOL,
+    ANGLE,
+    *JOINTS,
+    *BINDING,
+    OVER,
+    PAPER,
+    TAB,
+)
 
 
 def css(ink: Ink) -> str:
@@ -65,6 +98,13 @@ def speeds(count: int) -> list[Ink]:
 def deviations(count: int) -> list[Ink]:
     """From pale to strong in ``count`` colours."""
     return list(map(Ink, _ramp(_CALM_LIGHT, 0.0, 1.0, count), _ramp(_CALM_DARK, 0.0, 1.0, count)))
+
+
+def energies(below: int, above: int) -> list[Ink]:
+    """From blue over a calm middle to red: ``below`` colours, that of the middle, and ``above`` colours."""
+    light = [*_ramp(_COLD_LIGHT, 0.0, 1.0, below), _MIDDLE.light, *_ramp(_HOT_LIGHT, 0.0, 1.0, above)]
+    dark = [*_ramp(_COLD_DARK, 0.0, 1.0, below), _MIDDLE.dark, *_ramp(_HOT_DARK, 0.0, 1.0, above)]
+    return list(map(Ink, light, dark))
 
 
 def dark_rules(further: Iterable[Ink]) -> str:

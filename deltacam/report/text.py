@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from deltacam.model import Check, Report
 from deltacam.plain import plain
+from deltacam.report import kerf
 from deltacam.report.held_back import in_words
 
 _WIDEST_PLACE: Final = 100  # characters
@@ -33,7 +34,9 @@ def to_text(report: Report, *, every_check: bool = False) -> str:
     failed = [check for check in report.checks if not check.passed]
     lines = [_verdict(report, failed), *_figures(report.summary)]
     lines += [f"  cut      {cut}"] if (cut := _cut(report.checks)) else []
+    lines += [f"  energy   {energy}"] if (energy := _energy(report)) else []
     lines += [f"  held by  {in_words(report.held)}"] if report.held else []
+    lines += [f"  kerf     {of_kerf}"] if (of_kerf := kerf.in_words(report.kerf)) else []
     lines += ["", *_failures(failed, rate)] if failed else []
     lines += ["", *_in_two_columns([check for check in report.checks if check.passed])] if every_check else []
     lines += [""] if report.findings else []
@@ -68,6 +71,17 @@ def _cut(checks: Sequence[Check]) -> str:
         if name in found
     ]
     return f"{', '.join(parts)} um" if parts else ""
+
+
+def _energy(report: Report) -> str:
+    """The least and the most energy of a millimetre, and where that is."""
+    found = report.summary.get("line_energy")
+    worst = next((check for check in report.checks if check.name == "energy per mm"), None)
+    if not found or worst is None:
+        return ""
+    joules = f", {number_in_words(found['at_feed_j_mm'])} J/mm" if "at_feed_j_mm" in found else ""
+    most = f"{found['least']:.2f} to {found['most']:.2f} times that at the feed{joules}"
+    return f"{most}; most at {plain(worst.where, longest=_WIDEST_PLACE)}"
 
 
 def _figures(summary: Mapping[str, Any]) -> list[str]:

@@ -9,9 +9,10 @@ from typing import Final
 from shapely import Polygon
 
 from deltacam.model import Array, Contour, Drawing, Operation, Size
-from deltacam.verification.evidence import Evidence, Run
+from deltacam.verification.evidence import Evidence
 from deltacam.verification.kerf_path import flattened, rings
 from deltacam.verification.near import Lines
+from deltacam.verification.runs import Run
 from deltacam.verification.sizes import size
 from deltacam.verification.way import motion
 
@@ -53,6 +54,12 @@ class Comparison:
     sizes: tuple[Size, ...]
     parts: tuple[Polygon, ...]
 
+    @property
+    def due(self) -> tuple[Target, ...]:
+        """The targets that the program is to cut: all, but those before the contour that it goes on with."""
+        resumes = self.evidence.program.from_contour is not None
+        return tuple(target for target in self.targets if target.runs or not resumes)
+
 
 def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
     """Put the cuts of a program beside the contours of a drawing."""
@@ -67,7 +74,7 @@ def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
         done = tuple(runs[contour.number, contour.operation])
         targets.append(Target(contour, found, path, done))
         if contour.has_kerf and found and done:
-            ways = [motion(evidence, run, _ACCURACY) for run in done]
+            ways = [motion(evidence, run.begin, run.end, _ACCURACY) for run in done]
             sizes.append(size(contour, found, ways, kerf=kerf, exact_above=exact_above))
     return Comparison(evidence, drawing, tuple(targets), tuple(sizes), finished_parts(drawing))
 

@@ -11,8 +11,9 @@ import numpy as np
 
 from deltacam.model import Array, Check, Report
 from deltacam.program.program import Program
-from deltacam.verification.evidence import Evidence, Run, gather
+from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.near import Lines
+from deltacam.verification.runs import Run
 
 _EXACT_ABOVE: Final = 0.1e-6  # m
 

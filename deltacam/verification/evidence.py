@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -14,15 +13,22 @@ from deltacam.model import Array, Block, BlockKind, BoolArray, IntArray, Operati
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
 from deltacam.verification.interpolate import between
+from deltacam.verification.runs import Run, find_runs
 
 KINDS: Final = tuple(BlockKind)
 """`Evidence.kind` holds indices into this."""
 
-LASER_KINDS: Final = frozenset(KINDS) - {BlockKind.RAPID}
+DARK_KINDS: Final = frozenset({BlockKind.RAPID, BlockKind.LEAD_OUT, BlockKind.TAB})
+"""The kinds of block in which the laser is off."""
+
+LASER_KINDS: Final = frozenset(KINDS) - DARK_KINDS
 """The kinds of block in which the laser is on."""
 
 WORKING_KINDS: Final = {BlockKind.CUT: Operation.CUT, BlockKind.ENGRAVE: Operation.ENGRAVE}
 """The kinds of block that run along a contour of the drawing, and what they do to it."""
+
+ON_PATH_KINDS: Final = frozenset(WORKING_KINDS) | {BlockKind.OVERCUT}
+"""The kinds of block in which the tool is on the path of a contour, with the laser on."""
 
 MOVING_KINDS: Final = LASER_KINDS - {BlockKind.PIERCE}
 """The kinds of block that move along the sheet with the laser on."""
@@ -31,18 +37,6 @@ CHUNK: Final = 65_536
 """Rows at a time, which bounds the memory of the kinematics."""
 
 _NO_BLOCK: Final = Block(BlockKind.RAPID, 0, 0)  # of a row whose block does not exist; the laser must be off there
-
-
-class Run(NamedTuple):
-    """Rows in a row that cut or engrave one contour: the motion from tick ``first`` to tick ``end``.
-
-    Row ``end - 1`` is the last one with the laser on; it holds until tick ``end``.
-    """
-
-    contour: int | None
-    first: int
-    end: int
-    operation: Operation = Operation.CUT
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,6 +80,24 @@ class Evidence:
         """Which rows are of one of ``kinds``, (N,)."""
         return np.isin(self.kind, [KINDS.index(kind) for kind in kinds])
 
+    def stretches(self, run: Run, kinds: frozenset[BlockKind]) -> list[tuple[int, int]]:
+        """Where a run does nothing but ``kinds``: the tick at which each begins, and the one at which it ends."""
+        inside = self.is_kind(kinds)[run.begin : run.end]
+        edges = np.flatnonzero(np.diff(inside, prepend=False, append=False)) + run.begin
+        return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+    def on_path(self, run: Run) -> IntArray:
+        """The ticks of a run at which the tool is to be on the path of the contour, with the laser on.
+
+        A row that leaves the path for a loop or a lead-out ends beside it.
+        """
+        leaves = (KINDS.index(BlockKind.LOOP), KINDS.index(BlockKind.LEAD_OUT))
+        ticks = []
+        for first, end in self.stretches(run, ON_PATH_KINDS):
+            stays = self.kind[end] not in leaves or self.kind[end - 1] == KINDS.index(BlockKind.OVERCUT)
+            ticks.append(np.arange(first, end + stays))
+        return np.concatenate([np.empty(0, dtype=np.int64), *ticks])
+
     def place(self, row: int) -> str:
         """Where the tool is at a row, in words: sheet coordinates, and the contour that is worked on."""
         block = self.block_of(row)
@@ -114,7 +126,7 @@ def gather(program: Program, robot: Robot) -> Evidence:
         speed=length(np.diff(tool, axis=0)) * robot.controller.rate_hz,
         impossible=impossible,
         kind=kind,
-        runs=_runs(program, kind),
+        runs=find_runs(program.blocks, program.block),
     )
 
 
@@ -185,25 +197,3 @@ def _kinds(program: Program) -> IntArray:
     table = np.array([KINDS.index(block.kind) for block in (*program.blocks, _NO_BLOCK)], dtype=np.int64)
     known = (program.block >= 0) & (program.block < len(program.blocks))
     return table[np.where(known, program.block, len(program.blocks))]
-
-
-def _runs(program: Program, kind: IntArray) -> tuple[Run, ...]:
-    """Consecutive rows that cut, or that engrave, the same contour."""
-    working = np.isin(kind, [KINDS.index(one) for one in WORKING_KINDS])
-    contours = [-1 if block.contour is None else block.contour for block in program.blocks]
-    numbers = np.append(np.array(contours, dtype=np.int64), -1)
-    number = np.full(len(kind), -2)
-    number[working] = numbers[program.block[working]]
-    changed = (np.diff(number, prepend=-3) != 0) | (working & (np.diff(kind, prepend=-1) != 0))
-    edges = [*np.flatnonzero(changed).tolist(), len(kind)]
-    final = len(kind) - 1
-    return tuple(
-        Run(
-            None if number[first] < 0 else int(number[first]),
-            first,
-            min(end, final),
-            WORKING_KINDS[KINDS[int(kind[first])]],
-        )
-        for first, end in itertools.pairwise(edges)
-        if number[first] != -2
-    )

@@ -16,6 +16,8 @@ from deltacam.verification.near import Lines
 
 _SIMPLER: Final = 0.2e-6  # m; how far a way may be off so that it needs fewer points
 _SPACING: Final = 0.5e-3  # m, of samples along straight edges; a bump has vertices of its own
+_THINNEST: Final = 1e-6  # m, half of the width that a cut without a kerf is taken to have where it has leads
+_CLOSED: Final = 50e-6  # m
 _REACH: Final = 5.0  # how far a corner shifts an edge, in multiples of what its sides are shifted
 
 
@@ -36,7 +38,25 @@ def size(contour: Contour, rings: Sequence[Array], ways: Sequence[Array], *, ker
     left = _left(ways, kerf, contour, drawn)
     offset = abs(left.area - ideal.area) / ideal.length if ideal.length else 0.0
     edge, place = _largest_gap(ideal, left, rings, kerf / 2.0, exact_above)
-    return Size(contour.number, drawn.area, left.area, offset, edge, place)
+    return Size(
+        contour=contour.number,
+        drawn=drawn.area,
+        area=left.area,
+        offset=offset,
+        edge=edge,
+        place=place,
+        exact=ideal.area,
+        drawn_box=_box(drawn),
+        box=_box(left),
+    )
+
+
+def _box(shape: Polygon | MultiPolygon) -> tuple[float, float]:
+    """The width and the height of a shape, m; none of one that is empty."""
+    if shape.is_empty:
+        return 0.0, 0.0
+    left, bottom, right, top = shape.bounds
+    return right - left, top - bottom
 
 
 def _left(ways: Sequence[Array], kerf: float, contour: Contour, drawn: Polygon) -> Polygon | MultiPolygon:
@@ -44,10 +64,10 @@ def _left(ways: Sequence[Array], kerf: float, contour: Contour, drawn: Polygon) 
     lines = [shapely.simplify(LineString(way), _SIMPLER, preserve_topology=False) for way in ways if len(way) > 1]
     if not lines:
         return Polygon()
-    if kerf == 0.0:
+    if kerf == 0.0 and all(line.is_closed or _ends_near(line) for line in lines):
         closed = [Polygon(line.coords) for line in lines if len(line.coords) > 3]
         return shapely.union_all([shapely.make_valid(one) for one in closed])
-    half = kerf / 2.0
+    half = max(kerf / 2.0, _THINNEST)
     swept = shapely.union_all(shapely.buffer(lines, half, quad_segs=quarter_sides(half)))
     ribbons = list(swept.geoms) if isinstance(swept, MultiPolygon) else [swept]
     if contour.is_hole:
@@ -57,6 +77,12 @@ def _left(ways: Sequence[Array], kerf: float, contour: Contour, drawn: Polygon) 
     enclosed = shapely.union_all([Polygon(ribbon.exterior) for ribbon in ribbons]).difference(swept)
     pieces = np.array(shapely.get_parts(enclosed))
     return shapely.union_all(pieces[shapely.contains(drawn, shapely.point_on_surface(pieces))])
+
+
+def _ends_near(line: LineString) -> bool:
+    """Whether a way ends where it begins, without leads."""
+    first, last = np.asarray(line.coords)[[0, -1]]
+    return bool(np.hypot(*(last - first)) < _CLOSED)
 
 
 def _largest_gap(

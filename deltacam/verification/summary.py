@@ -8,8 +8,9 @@ from typing import Any, Final
 import numpy as np
 
 from deltacam.geometry.pack import Pack
-from deltacam.model import Array, BlockKind, Check, Drawing, Operation
+from deltacam.model import Array, BlockKind, Check, Drawing, Mode, Operation
 from deltacam.verification.checks.measure import DIFFERENCES
+from deltacam.verification.energy import line_energy, to_j_mm
 from deltacam.verification.evidence import KINDS, MOVING_KINDS, Evidence
 
 _SHARES: Final = (
@@ -40,7 +41,7 @@ def summarize(evidence: Evidence, drawing: Drawing | None, checks: Sequence[Chec
         "time_s": _times(evidence),
         "share_of_limit": _shares(checks),
     }
-    figures |= _lengths(evidence)
+    figures |= _lengths(evidence) | _energy(evidence)
     if drawing:
         figures["unit"] = drawing.unit_in_words
         figures["conversion_error_um"] = drawing.conversion_error * 1e6
@@ -82,6 +83,18 @@ def _lengths(evidence: Evidence) -> dict[str, Any]:
     if working.any():
         figures["path_size_mm"] = _size(evidence.sheet[:-1][working])
     return figures
+
+
+def _energy(evidence: Evidence) -> dict[str, Any]:
+    """The least and the most energy of a millimetre of a cut, times that at the feed; nothing where nothing is cut."""
+    if not len(evidence.tool) or evidence.program.mode is not Mode.CUT:
+        return {}
+    found = line_energy(evidence)
+    if not np.isfinite(found).any():
+        return {}
+    figures = {"least": float(np.nanmin(found)), "most": float(np.nanmax(found))}
+    usual = to_j_mm(evidence.program.process)
+    return {"line_energy": figures | ({"at_feed_j_mm": usual} if usual else {})}
 
 
 def _size(points: Array) -> list[float]:

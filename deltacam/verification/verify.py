@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from deltacam.model import UNCHECKED, Drawing, Finding, Mode, Process, Report, Size
+from deltacam.model import UNCHECKED, Drawing, Finding, KerfEffect, Mode, Process, Report, Size
 from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
 from deltacam.verification.checks import file
@@ -16,21 +16,26 @@ from deltacam.verification.checks.contours import same_drawing
 from deltacam.verification.checks.table import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
 from deltacam.verification.comparison import Comparison, compare
 from deltacam.verification.evidence import Evidence, gather
+from deltacam.verification.kerf_effects import kerf_effects
 from deltacam.verification.summary import summarize
 
 CONTOUR_CHECKS: Final = (
     "drawing",
     "cuts of drawn contours only",
     "every contour cut once",
+    "begins at its contour",
     "deviation at ticks",
     "deviation between ticks",
     "uncut length",
     "cut length",
     "material cut twice",
+    "reduced feed",
     "part size",
     "part edge",
     "pierce outside the part",
     "leads outside the part",
+    "overcut",
+    "tab width",
     "gap at the end of a cut",
     "inner contours first",
     "contours cut last",
@@ -62,6 +67,7 @@ def verify(
     if drawing:
         checks.append(same_drawing(program, drawing))
     sizes: tuple[Size, ...] = ()
+    effects: tuple[KerfEffect, ...] = ()
     if evidence.impossible[1]:
         what = "the arms cannot close at some tick, so that nothing about positions was checked"
         findings.append(Finding(what, kind=UNCHECKED))
@@ -69,9 +75,27 @@ def verify(
         checks += [check(evidence) for check in OF_POSITIONS]
         comparison = _compared(evidence, drawing, findings)
         checks += [check(comparison) for check in OF_CONTOURS if comparison]
+        findings += _not_cut_again(comparison)
         sizes = comparison.sizes if comparison else ()
+        effects = _effects(comparison) if comparison else ()
     ledger = drawing.ledger if drawing else ()
-    return Report(tuple(checks), summarize(evidence, drawing, checks), ledger, tuple(findings), sizes)
+    summary = summarize(evidence, drawing, checks)
+    return Report(tuple(checks), summary, ledger, tuple(findings), sizes, kerf=effects)
+
+
+def _effects(comparison: Comparison) -> tuple[KerfEffect, ...]:
+    """What the kerf does to the contours of the drawing."""
+    rings = [target.rings for target in comparison.targets]
+    return kerf_effects(comparison.drawing.contours, rings, comparison.evidence.program.process.kerf)
+
+
+def _not_cut_again(comparison: Comparison | None) -> list[Finding]:
+    """What a program that goes on after a stop leaves out."""
+    left_out = [one.contour for one in comparison.targets if one not in comparison.due] if comparison else []
+    if not left_out:
+        return []
+    what = f"not checked: {len(left_out)} contours that this program says were cut before"
+    return [Finding(what, where=left_out[0].where, hint="look at the sheet before it runs", kind=UNCHECKED)]
 
 
 def _compared(evidence: Evidence, drawing: Drawing | None, findings: list[Finding]) -> Comparison | None:

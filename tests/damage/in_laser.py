@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from deltacam.model import Block, BlockKind, IntArray, Mode
+from deltacam.model import Block, BlockKind, IntArray, Mode, PowerLaw
 from deltacam.program.program import Program
 from tests.damage.aim import NoPlaceError
 from tests.damage.example import WORKING, Example
@@ -35,6 +35,21 @@ def weaker(case: Example, amount: float, chance: np.random.Generator) -> Program
     """A power that is less by this share, for a tick."""
     row = _stretch(case, (*WORKING, BlockKind.PIERCE), 1, chance)
     return with_power(case.program, row, case.program.power[row] * (1.0 - amount))
+
+
+def beside_the_law(case: Example, amount: float, chance: np.random.Generator) -> Program:
+    """Powers that follow the speed by a law, but for a tick that has so many thousandths of the rated power less."""
+    process = case.program.process
+    way = np.linalg.norm(case.middles - case.tool[:-1], axis=1) + np.linalg.norm(case.tool[1:] - case.middles, axis=1)
+    speed = np.append(way * case.rate, 0.0)
+    power = case.program.power.copy()
+    cutting = (BlockKind.LEAD_IN, BlockKind.CUT, BlockKind.LOOP, BlockKind.OVERCUT)
+    feeds = {**dict.fromkeys(cutting, process.feed), BlockKind.ENGRAVE: process.engrave_feed or 1.0}
+    for kind, feed in feeds.items():
+        rows = case.rows(kind)
+        power[rows] *= 0.5 + 0.5 * np.minimum(speed[rows] / feed, 1.0)
+    power[_stretch(case, WORKING, 1, chance)] -= amount * 1e-3
+    return replace(case.program, power=power, process=replace(process, power_law=PowerLaw(at_rest=0.5)))
 
 
 def too_strong(case: Example, amount: float, chance: np.random.Generator) -> Program:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from deltacam.model import Array, BlockKind, IntArray
+from deltacam.model import Array, BlockKind, IntArray, Slower
 from deltacam.program.program import Program
 from tests.damage.aim import NoPlaceError, aim
 from tests.damage.example import WORKING, Example
@@ -84,6 +84,35 @@ def slower_feed_in_meta(case: Example, amount: float, _: np.random.Generator) ->
     """A process whose feed is exceeded by the same rows."""
     process, used = case.program.process, _feed_share(case, BlockKind.CUT)
     return replace(case.program, process=replace(process, feed=process.feed * used / amount))
+
+
+def slower_holes_in_meta(case: Example, amount: float, _: np.random.Generator) -> Program:
+    """A process with a rule for holes that the same rows exceed."""
+    holes = {one.number for one in case.drawing.contours if one.is_hole and one.has_kerf}
+    rows = np.array([row for row in case.rows(BlockKind.CUT).tolist() if case.contour(row).number in holes], dtype=int)
+    if not len(rows):
+        raise NoPlaceError
+    fastest = float(np.linalg.norm(case.tool[rows + 1] - case.tool[rows], axis=1).max()) * case.rate
+    process = case.program.process
+    rule = Slower(min(fastest / (process.feed * ALLOWED * amount), 1.0), diameter=1.0)
+    return replace(case.program, process=replace(process, slower=(rule,)))
+
+
+def slower_bends_in_meta(case: Example, amount: float, _: np.random.Generator) -> Program:
+    """A process with a rule for bends that the rows of a circle exceed."""
+    cut = [one for one in case.drawing.contours if one.has_kerf]
+    circles = {one.number: one.curve for one in cut if (one.curve.bulges == 1.0).all()}
+    blocks = [one for one in case.program.blocks if one.kind is BlockKind.CUT and one.contour in circles]
+    if not blocks:
+        raise NoPlaceError
+    block = blocks[0]
+    quarter = (block.last - block.first) // 4
+    tool = case.tool[block.first + quarter : block.last - quarter]
+    fastest = float(np.linalg.norm(np.diff(tool, axis=0), axis=1).max()) * case.rate
+    radius = 0.5 * float(np.ptp(circles[block.contour or 0].points, axis=0).max())
+    process = case.program.process
+    rule = Slower(min(fastest / (process.feed * ALLOWED * amount), 1.0), radius=1.03 * radius)
+    return replace(case.program, process=replace(process, slower=(rule,)))
 
 
 def faster_cut(case: Example, amount: float, chance: np.random.Generator) -> Program:

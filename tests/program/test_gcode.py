@@ -133,6 +133,17 @@ def test_a_dry_run_cuts_with_the_laser_off_at_the_feed(bench: Bench) -> None:
     assert 3 in moves.motion
 
 
+def test_a_power_at_every_tick_is_followed_and_summed_up_in_the_head(bench_program: Program) -> None:
+    on = bench_program.power > 0.0
+    power = np.where(on, np.round(0.2 + 0.6 * (np.arange(len(on)) % 97) / 97.0, 3), 0.0)
+    program = replace(bench_program, power=power)
+    content = written(program)
+    assert_follows(read(content), program)
+    lines = content.decode("ascii").split("\n")
+    assert lines[2] == "(mode cut, power S200 to S794 of S1000)"
+    assert max(map(len, lines)) < 250
+
+
 def test_the_file_looks_as_documented(bench_program: Program) -> None:
     lines = written(bench_program).decode("ascii").split("\n")
     assert lines[0] == "(motion of plate.dxf, made by deltacam)"

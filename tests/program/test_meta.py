@@ -53,15 +53,27 @@ WRONG: dict[str, tuple[Change, str, str]] = {
     "a program from before": (lambda m: m["drawing"].pop("joining_m"), "drawing", "missing joining_m"),
     "rules from before": (lambda m: m["process"].pop("rules"), "process", "missing rules"),
     "no list of rules": (lambda m: m["process"].update(rules={}), "process", "rules is not a list"),
-    "a rule with another key": (lambda m: m["process"]["rules"][1].update(tabs=1), "process, rules, item 1", "unknown 'tabs'"),
-    "a rule without a key": (lambda m: m["process"]["rules"][0].pop("open"), "process, rules, item 0", "missing open"),
+    "a rule with another key": (
+        lambda m: m["process"]["rules"][1].update(tabs=1),
+        "process, rules 1",
+        "unknown 'tabs'",
+    ),
+    "a rule without a key": (lambda m: m["process"]["rules"][0].pop("open"), "process, rules 0", "missing open"),
     "an unknown operation": (
         lambda m: m["process"]["rules"][0].update(operation="weld"),
-        "process, rules, item 0",
+        "process, rules 0",
         "unknown operation 'weld'",
     ),
-    "color 256": (lambda m: m["process"]["rules"][0].update(color=256), "process, rules, item 0", "color is outside 1 to 255"),
-    "a layer of nothing": (lambda m: m["process"]["rules"][0].update(layer=""), "process, rules, item 0", "0 characters"),
+    "color 256": (
+        lambda m: m["process"]["rules"][0].update(color=256),
+        "process, rules 0",
+        "color is outside 1 to 255",
+    ),
+    "a layer of nothing": (
+        lambda m: m["process"]["rules"][0].update(layer=""),
+        "process, rules 0",
+        "0 characters",
+    ),
     "an unknown way for open lines": (lambda m: m["process"].update(open="burn"), "process", "unknown open 'burn'"),
     "engraving at no speed": (lambda m: m["process"].update(engrave_feed=0), "process", "engrave_feed is outside"),
     "engraving with double power": (

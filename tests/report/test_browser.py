@@ -17,6 +17,7 @@ from deltacam.program.program import Program
 from deltacam.report.html import to_html
 from deltacam.report.motion import deviations, motion_of
 from deltacam.report.page import plotly_js
+from deltacam.verification.energy import line_energy
 from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.verify import verify
 from tests.bench import Bench
@@ -96,6 +97,8 @@ def test_pointing_at_the_path_tells_the_values_of_the_nearest_tick(chromium: Bro
     assert words["x, y"] == f"{x:.3f}, {y:.3f} mm"
     speed = 1e3 * motion_of(shown.evidence).speed[tick]
     assert float(words["speed"].removesuffix(" mm/s")) == pytest.approx(speed, rel=1e-3)
+    energy = line_energy(shown.evidence)[tick]
+    assert float(words["energy per mm"].partition(" ")[0]) == pytest.approx(energy, rel=1e-3)
     deviation = 1e6 * deviations(shown.evidence, shown.drawing)[tick]
     assert float(words["deviation"].removesuffix(" µm")) == pytest.approx(deviation, abs=1e-3)
     assert (words["does"], words["contour"], words["layer"], words["handle"]) == ("cut", "3", "CUT", "#3A")
@@ -159,7 +162,7 @@ def test_scrolling_zooms_the_part_until_its_setpoints_are_seen(chromium: Browser
 def test_the_path_is_coloured_by_what_is_chosen(chromium: Browser, shown: Shown) -> None:
     chromium.open(shown.path)
     seen = {}
-    for name in ("Deviation", "Limit", "Speed"):
+    for name in ("Deviation", "Limit", "Energy", "Speed"):
         chromium.run(
             "[...document.querySelectorAll('#colours button')].find((b) => b.textContent === arguments[0]).click()",
             name,
@@ -170,7 +173,7 @@ def test_the_path_is_coloured_by_what_is_chosen(chromium: Browser, shown: Shown)
         assert pressed == name
         assert chromium.run("return document.querySelectorAll('#legend li').length") > 3
     assert "rgb(229, 32, 46)" in seen["Deviation"]
-    assert len({frozenset(colours) for colours in seen.values()}) == 3
+    assert len({frozenset(colours) for colours in seen.values()}) == 4
 
 
 def test_the_row_of_a_failed_check_leads_to_its_place(chromium: Browser, shown: Shown) -> None:

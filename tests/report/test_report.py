@@ -35,7 +35,7 @@ def bad(bench: Bench, program: Program) -> Report:
 def test_the_json_has_the_documented_keys_in_order(bench: Bench, program: Program) -> None:
     report = verify(program, drawing=bench.drawing)
     found = json.loads(to_json(report), parse_constant=pytest.fail)
-    assert list(found) == [*("passed", "warnings", "checks", "summary", "ledger", "findings", "sizes", "held")]
+    assert list(found) == [*("passed", "warnings", "checks", "summary", "ledger", "findings", "sizes", "held", "kerf")]
     assert found["passed"] is True
     keys = ["name", "passed", "worst", "limit", "unit", "tick", "where"]
     assert list(found["checks"][0]) == [*keys, "time", "place", "contour", "layer", "handle", "warns"]

@@ -14,7 +14,7 @@ import pytest
 
 import deltacam
 from deltacam.geometry import curve as curves
-from deltacam.model import UNCHECKED, Block, BlockKind, Mode, Placement
+from deltacam.model import UNCHECKED, Block, BlockKind, Gas, Lead, Mode, Placement, Provenance
 from deltacam.program import csv
 from deltacam.program.program import Program
 from deltacam.verification.checks.table import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
@@ -141,6 +141,16 @@ def test_a_given_process_is_the_one_that_counts(bench: Bench, program: Program) 
     strict = verify(moved, drawing=bench.drawing, process=program.process)
     assert bench.failed(strict) >= {"process", "deviation at ticks"}
     assert bench.check(strict, "process").where == "feed 0.5 for 0.1, tolerance 0.001 for 2e-05"
+
+
+def test_what_a_process_says_for_people_may_differ(bench: Bench, program: Program) -> None:
+    own = program.process
+    words = {"gas": "air", "gases": (Gas("air"),), "laser": "co2", "laser_power": 60.0, "feeds": (0.05, 0.2)}
+    said = replace(own, **words, provenance=(Provenance("kerf_mm", "vendor"),), source="another", material="another")
+    assert bench.check(verify(program, drawing=bench.drawing, process=said), "process").passed
+    other = replace(own, lead_in=Lead("line"), overcut=1e-3)
+    where = bench.check(verify(program, drawing=bench.drawing, process=other), "process").where
+    assert where == "lead_in others for others, overcut 0 for 0.001"
 
 
 def test_a_frame_program_is_not_compared_with_the_contours(bench: Bench, program: Program) -> None:

@@ -24,6 +24,7 @@ function describe(data, samples, i) {
   if (samples.place) rows.push(["x, y", samples.place.map((column) => column[i].toFixed(3)).join(", ") + " mm"]);
   if (samples.has("speed", i)) rows.push(["speed", `${samples.words("speed", i)} mm/s`]);
   if (samples.has("deviation", i)) rows.push(["deviation", `${samples.words("deviation", i)} \u00b5m`]);
+  if (samples.has("energy", i)) rows.push(["energy per mm", `${samples.words("energy", i)} \u00d7 that at the feed`]);
   rows.push(["nearest limit", `${data.limits[samples.limit[i]] ?? "none"}, ${samples.words("share", i)} % used`]);
   rows.push(["does", kind]);
   if (contour !== null) {

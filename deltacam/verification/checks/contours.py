@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 
 from deltacam.model import Check, Drawing, Operation
 from deltacam.program.program import Program
 from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison
+from deltacam.verification.evidence import Evidence
+from deltacam.verification.runs import Run
 
 
 def same_drawing(program: Program, drawing: Drawing) -> Check:
@@ -33,8 +36,11 @@ def known_contours(comparison: Comparison) -> Check:
 
 
 def cut_once(comparison: Comparison) -> Check:
-    """Every contour is cut or engraved exactly once: as many times as its path has rings, and it has at least one."""
-    wrong = [target for target in comparison.targets if len(target.runs) != len(target.rings) or not target.rings]
+    """Every contour is cut or engraved exactly once: as many times as its path has rings, and it has at least one.
+
+    In a program that goes on after a stop there may be contours that are not cut again.
+    """
+    wrong = [target for target in comparison.due if len(target.runs) != len(target.rings) or not target.rings]
     name, unit = "every contour cut once", "contours"
     if not wrong:
         return Check(name, True, 0.0, 0.0, unit)
@@ -45,14 +51,35 @@ def cut_once(comparison: Comparison) -> Check:
     return at_contour(found, first.contour)
 
 
+def resumed(comparison: Comparison) -> Check:
+    """A program that goes on after a stop begins with the contour that it says."""
+    evidence, name = comparison.evidence, "begins at its contour"
+    contour, runs = evidence.program.from_contour, evidence.runs
+    if contour is None or (runs and runs[0].contour == contour):
+        return Check(name, True)
+    tick = runs[0].first if runs else None
+    return at_tick(evidence, name, False, tick=tick, where=f"said to go on from contour {contour}")
+
+
 def closed(comparison: Comparison) -> Check:
-    """The cut of a closed contour ends where it started."""
+    """The cut of a closed contour, with its overcut, comes back to where it started."""
     evidence = comparison.evidence
     runs = [run for target in comparison.targets if target.contour.curve.closed for run in target.runs]
-    first, end = (np.array(ticks, dtype=np.int64) for ticks in ([run.first for run in runs], [run.end for run in runs]))
-    gap = np.hypot(*(evidence.sheet[end] - evidence.sheet[first]).T)
-    limit = evidence.program.process.tolerance
-    return at_most(evidence, "gap at the end of a cut", gap * 1e6, limit * 1e6, "um", ticks=end)
+    gaps = [_gap(evidence, run) for run in runs]
+    limit, ticks = evidence.program.process.tolerance, np.array([run.end for run in runs], dtype=np.int64)
+    return at_most(evidence, "gap at the end of a cut", np.array(gaps) * 1e6, limit * 1e6, "um", ticks=ticks)
+
+
+def _gap(evidence: Evidence, run: Run) -> float:
+    """How far the second half of a run stays from where the run starts, m.
+
+    Where a lead-in comes before it, the cut starts somewhere on the way to its first tick, and the end of an overcut
+    lies beyond that tick.
+    """
+    led = run.begin < run.first
+    start = evidence.sheet[[run.first - led, run.first, run.first + led]]
+    way = evidence.sheet[(run.first + run.end) // 2 : run.end + 1]
+    return float(shapely.distance(shapely.LineString(start), shapely.LineString(np.concatenate([way, way[-1:]]))))
 
 
 def holes_first(comparison: Comparison) -> Check:

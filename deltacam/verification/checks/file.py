@@ -46,8 +46,11 @@ def robot(evidence: Evidence) -> Check:
 
 
 def same_process(planned: Process, given: Process) -> Check:
-    """The program was made for the process that it is checked against; names, sources and words may differ."""
-    words = ("name", "source", "material", "gas")
+    """The program was made for the process that it is checked against; what is said for people may differ.
+
+    A gas is a word here too: what it does to the feed is in the feed.
+    """
+    words = ("name", "source", "material", "gas", "gases", "laser", "laser_power", "feeds", "provenance")
     names = [one.name for one in fields(Process) if one.name not in words]
     differ = [name for name in names if getattr(planned, name) != getattr(given, name)]
     shown = (f"{name} {_shown(getattr(planned, name))} for {_shown(getattr(given, name))}" for name in differ)
@@ -55,8 +58,10 @@ def same_process(planned: Process, given: Process) -> Check:
 
 
 def _shown(value: object) -> str:
-    """A number or a word; rules are too long to be shown."""
-    return f"{value:.6g}" if isinstance(value, float) else "others" if isinstance(value, tuple) else str(value)
+    """A number or a word; rules, leads and the like are too long to be shown."""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return str(value) if value is None or isinstance(value, (str, int)) else "others"
 
 
 def other_jerk_limit(evidence: Evidence) -> str:

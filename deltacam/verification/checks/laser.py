@@ -6,15 +6,20 @@ from typing import Final
 
 import numpy as np
 
-from deltacam.model import BlockKind, Check, IntArray, Mode, Operation
+from deltacam.model import Array, BlockKind, Check, IntArray, Mode, Operation
+from deltacam.verification import energy
 from deltacam.verification.checks.measure import MICROMETRE, at_most, none_of
-from deltacam.verification.evidence import KINDS, LASER_KINDS, MOVING_KINDS, Evidence, Run
+from deltacam.verification.evidence import KINDS, LASER_KINDS, Evidence, length
+from deltacam.verification.runs import Run
 
 REST: Final = 0.02
 """How long the laser may stay on at rest beyond the pierce, s."""
-WINDOW: Final = 1e-3
-"""Length of cut over which energy is added up, m."""
+POWER_STEP: Final = 1e-3
+"""How far the power of a tick may be from that for its speed, of the rated power."""
+SPEED_KNOWN: Final = 1e-6
+"""How exactly the speed from a tick to the next is known, m/s; for laws that are steep at rest."""
 
+_SAME_JOINTS: Final = 1e-9  # rad
 _PIERCE: Final = KINDS.index(BlockKind.PIERCE)
 _LEAD_IN: Final = KINDS.index(BlockKind.LEAD_IN)
 _ENGRAVE: Final = KINDS.index(BlockKind.ENGRAVE)
@@ -35,13 +40,42 @@ def laser_off(evidence: Evidence) -> Check:
 
 
 def laser_on(evidence: Evidence) -> Check:
-    """A program for cutting has the power of its process in all pierces and cuts, and that for engraving elsewhere."""
-    process = evidence.program.process
-    engraving = np.nan if process.engrave_power is None else process.engrave_power  # nan is no power at all
-    wanted = np.where(evidence.kind == _ENGRAVE, engraving, process.power)
-    wrong = evidence.program.power != wanted
+    """A program for cutting has the power of its process in all pierces and cuts, and that for engraving elsewhere.
+
+    Where the process has a power law, what moves has the power for its speed, to within `POWER_STEP`.
+    """
+    least, most = _power_range(evidence)
+    power = evidence.program.power
+    wrong = ~((power >= least) & (power <= most))  # nan is no power at all
     wrong = wrong & evidence.is_kind(LASER_KINDS) & (evidence.program.mode is Mode.CUT)
     return none_of(evidence, "laser on in all cuts", wrong)
+
+
+def _power_range(evidence: Evidence) -> tuple[Array, Array]:
+    """The least and the most power that every row may have, (N,) each; nan where the process does not say."""
+    process = evidence.program.process
+    engraves, pierces = evidence.kind == _ENGRAVE, evidence.kind == _PIERCE
+    full = np.where(engraves, np.nan if process.engrave_power is None else process.engrave_power, process.power)
+    full = np.where(pierces & (process.pierce_power is not None), process.pierce_power or 0.0, full)
+    law = process.power_law
+    if law is None:
+        return full, full
+    feed = np.where(engraves, process.engrave_feed or np.nan, process.feed)
+    slow, fast = np.zeros_like(full), np.full_like(full, np.inf)
+    if len(evidence.tool):  # else any speed is possible
+        slow, fast = (_true_speed(evidence) + change for change in (-SPEED_KNOWN, SPEED_KNOWN))
+
+    def power(speed: Array, step: float) -> Array:
+        share = np.clip(speed / feed, 0.0, 1.0) ** law.exponent
+        return np.clip((law.at_rest + (1.0 - law.at_rest) * share) * full + step, np.minimum(law.lowest, full), full)
+
+    return np.where(pierces, full, power(slow, -POWER_STEP)), np.where(pierces, full, power(fast, POWER_STEP))
+
+
+def _true_speed(evidence: Evidence) -> Array:
+    """The mean speed of the tool from every tick to the next by way of where it is between them, (N,) m/s."""
+    way = length(evidence.between - evidence.tool[:-1]) + length(evidence.tool[1:] - evidence.between)
+    return np.append(way * evidence.rate, 0.0)
 
 
 def pierce_at_rest(evidence: Evidence) -> Check:
@@ -54,18 +88,31 @@ def pierce_at_rest(evidence: Evidence) -> Check:
 
 
 def pierce_before_cut(evidence: Evidence) -> Check:
-    """Every cut follows a pierce of its contour that is as long as the process says, to within half a tick."""
+    """Every cut follows a pierce of its contour that is as long as the process says, to within half a tick.
+
+    Where the process pierces everything first, that was somewhere before, in the place where the cut begins.
+    """
     start = _stretch_starts(evidence)
     needed = evidence.program.process.pierce_time
     cuts = [run for run in evidence.runs if run.operation is Operation.CUT]
-    missing = np.array([needed - _pierced_for(evidence, run, start) for run in cuts])
-    ticks = np.array([run.first for run in cuts], dtype=np.int64)
+    missing = [needed - _pierced_for(evidence, run, start) for run in cuts]
+    ticks = [run.first for run in cuts]
+    for run in cuts:
+        # Behind a tab the laser comes on again.
+        for _, end in evidence.stretches(run, frozenset({BlockKind.TAB})):
+            others = np.flatnonzero(evidence.kind[end:] != KINDS.index(BlockKind.PIERCE))
+            missing.append(needed - float(others[0] if len(others) else 0) / evidence.rate)
+            ticks.append(end)
     limit = 0.5 / evidence.rate
-    return at_most(evidence, "pierce before every cut", missing * 1e3, limit * 1e3, "ms missing", ticks=ticks)
+    where = np.array(ticks, dtype=np.int64)
+    return at_most(evidence, "pierce before every cut", np.array(missing) * 1e3, limit * 1e3, "ms missing", ticks=where)
 
 
 def cut_after_pierce(evidence: Evidence) -> Check:
-    """Every pierce is followed by a cut, or the lead-in of one, of its contour: nothing else burns a hole."""
+    """Every pierce is followed by a cut, or the lead-in of one, of its contour: nothing else burns a hole.
+
+    Where the process pierces everything first, a cut of its contour begins in its place later.
+    """
     last = np.flatnonzero((evidence.kind == _PIERCE) & (np.append(evidence.kind[1:], -1) != _PIERCE))
     wrong = np.zeros(len(evidence.kind), dtype=np.bool_)
     for row in last.tolist():
@@ -75,6 +122,10 @@ def cut_after_pierce(evidence: Evidence) -> Check:
             or following.kind not in (BlockKind.LEAD_IN, BlockKind.CUT)
             or following.contour != evidence.block_of(row).contour
         )
+        if evidence.program.process.pre_pierce and wrong[row]:
+            contour = evidence.block_of(row).contour
+            later = [run for run in evidence.runs if run.contour == contour and run.begin > row]
+            wrong[row] = not any(_same_place(evidence, row, run.begin) for run in later)
     return none_of(evidence, "cut after every pierce", wrong, "pierces")
 
 
@@ -94,41 +145,42 @@ def laser_at_rest(evidence: Evidence) -> Check:
 
 
 def line_energy(evidence: Evidence) -> Check:
-    """The most energy along `WINDOW` of a cut, as a multiple of what the process gives at its feed; there is no limit.
+    """The most energy along a millimetre of a cut, as a multiple of what the process gives at its feed; no limit.
 
-    Where the tool slows down at constant power, in corners and bends and at both ends, it burns more.
+    Where the tool slows down at constant power, in corners and bends and at both ends, it burns more. A file may state
+    a process without power: then nothing is usual, and `laser_on` says what is wrong.
     """
-    process, moving = evidence.program.process, evidence.is_kind(MOVING_KINDS)[:-1]
-    step = np.where(moving, evidence.speed, 0.0) / evidence.rate
-    spent = np.where(moving, evidence.program.power[:-1] / evidence.rate, 0.0)
-    way, energy = (np.concatenate([[0.0], np.cumsum(one)]) for one in (step, spent))
-    # Only windows within one run count: way and energy of different runs follow each other here.
-    ends = np.array([run.end for run in evidence.runs], dtype=np.int64)
-    rows = [np.arange(run.first, run.end) for run in evidence.runs]
-    ticks = np.concatenate([np.empty(0, dtype=np.int64), *rows])
-    last = way[np.repeat(ends, [len(one) for one in rows])]
-    inside = way[ticks] + WINDOW <= last
-    ticks = ticks[inside]
-    found = (np.interp(way[ticks] + WINDOW, way, energy) - energy[ticks]) / WINDOW
-    engraving = evidence.kind[ticks] == _ENGRAVE
-    usual = np.where(
-        engraving,
-        (process.engrave_power or process.power) / (process.engrave_feed or process.feed),
-        process.power / process.feed,
-    )
-    # A file may state a process without power: then nothing is usual, and `laser_on` says what is wrong.
-    times = np.divide(found, usual, out=np.zeros_like(found), where=usual > 0.0)
-    return at_most(evidence, "energy per mm", times, None, "times that at the feed", ticks=ticks)
+    found = energy.line_energy(evidence)
+    ticks = np.flatnonzero(np.isfinite(found))
+    return at_most(evidence, "energy per mm", found[ticks], None, "times that at the feed", ticks=ticks)
 
 
 def _pierced_for(evidence: Evidence, run: Run, start: IntArray) -> float:
     """How long the laser pierces before a cut, a lead-in between them allowed, s."""
+    if evidence.program.process.pre_pierce:
+        return _pierced_first(evidence, run, start)
     row = run.first
     if row and evidence.kind[row - 1] == _LEAD_IN:
         row = int(start[row - 1])
     if not row or evidence.kind[row - 1] != _PIERCE or evidence.block_of(row - 1).contour != run.contour:
         return 0.0
     return (row - int(start[row - 1])) / evidence.rate
+
+
+def _pierced_first(evidence: Evidence, run: Run, start: IntArray) -> float:
+    """How long the laser pierced where a cut begins, some time before, s."""
+    rows = np.flatnonzero(evidence.kind[: run.begin] == _PIERCE)
+    lasts = rows[np.append(evidence.program.block[rows[1:]] != evidence.program.block[rows[:-1]], True)[: len(rows)]]
+    for row in lasts.tolist():
+        if evidence.block_of(row).contour == run.contour and _same_place(evidence, row, run.begin):
+            return float(row + 1 - int(start[row])) / evidence.rate
+    return 0.0
+
+
+def _same_place(evidence: Evidence, row: int, other: int) -> bool:
+    """Whether the joints are the same at two rows."""
+    q = evidence.program.q
+    return bool(np.abs(q[row] - q[other]).max() <= _SAME_JOINTS)
 
 
 def _stretch_starts(evidence: Evidence) -> IntArray:

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from deltacam.model import Array, Check, IntArray
 from deltacam.verification.checks.measure import at_tick
 from deltacam.verification.comparison import Comparison
+from deltacam.verification.evidence import WORKING_KINDS
 
 LONGEST: Final = 1.0e-3
 """Length that may be cut again, m: less cannot be told from the ends of cuts."""
@@ -26,22 +27,22 @@ def cut_again(comparison: Comparison) -> Check:
     or of a sharp corner are near each other in both.
     """
     evidence, name, limit = comparison.evidence, "material cut twice", LONGEST * 1e3
-    runs = [run for run in evidence.runs if run.end > run.first]
-    if not runs:
+    spans = [span for run in evidence.runs for span in evidence.stretches(run, frozenset(WORKING_KINDS))]
+    if not spans:
         return Check(name, True, 0.0, limit, "mm")
-    found = [_evenly(evidence.sheet[run.first : run.end + 1]) for run in runs]
+    found = [_evenly(evidence.sheet[first : end + 1]) for first, end in spans]
     samples = np.concatenate([points for points, _ in found])
-    ticks = np.concatenate([run.first + steps for run, (_, steps) in zip(runs, found, strict=True)])
+    ticks = np.concatenate([first + steps for (first, _), (_, steps) in zip(spans, found, strict=True)])
     rings = [
         np.vstack([ring, ring[:1]]) if target.contour.curve.closed else ring
         for target in comparison.targets
         for ring in target.rings
     ]
     drawn = np.concatenate([np.empty((0, 2)), *(_evenly(ring)[0] for ring in rings)])
-    once = 2.0 * _RADIUS / _SPACING
+    once, passes = 2.0 * _RADIUS / _SPACING, evidence.program.process.passes
     passed = _near(samples, samples) - _AGAIN * once
-    again = np.flatnonzero(passed > once)
-    again = again[passed[again] > _near(samples[again], drawn)]
+    again = np.flatnonzero(passed > passes * once)
+    again = again[passed[again] > passes * _near(samples[again], drawn)]
     # Both passes are counted where they lie on each other, so that half of it is what was cut again.
     length, tick = len(again) * _SPACING * 1e3 / 2.0, int(ticks[again[-1]]) if len(again) else None
     return at_tick(evidence, name, length <= limit, length, limit, "mm", tick=tick)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 import shapely
 
@@ -10,6 +12,8 @@ from deltacam.verification.checks.measure import MICROMETRE, at_contour, at_most
 from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import KINDS
 from deltacam.verification.kerf_path import ACCURACY
+
+_BESIDE: Final = frozenset({BlockKind.LEAD_IN, BlockKind.LEAD_OUT, BlockKind.LOOP})
 
 
 def part_size(comparison: Comparison) -> Check:
@@ -31,21 +35,30 @@ def pierce_outside(comparison: Comparison) -> Check:
 
 
 def leads_outside(comparison: Comparison) -> Check:
-    """The same at every tick of a lead to a cut or from it, whatever it is said to lead to."""
-    leads = np.flatnonzero(comparison.evidence.is_kind(frozenset({BlockKind.LEAD_IN, BlockKind.LEAD_OUT})))
-    return _outside(comparison, "leads outside the part", leads)
-
-
-def _outside(comparison: Comparison, name: str, ticks: IntArray) -> Check:
-    """The check that the tool is half a kerf away from all finished parts at some ticks, to the tolerance."""
+    """The same all along every lead and every loop, whatever contour it is said to belong to."""
     evidence = comparison.evidence
-    process, parts, points = evidence.program.process, comparison.parts, shapely.points(evidence.sheet[ticks])
-    which, part = shapely.STRtree(parts).query(points, predicate="dwithin", distance=process.kerf)
+    rows = np.flatnonzero(evidence.is_kind(_BESIDE))
+    rows = rows[rows < len(evidence.sheet) - 1]
+    return _outside(comparison, "leads outside the part", rows, ways=True)
+
+
+def _outside(comparison: Comparison, name: str, ticks: IntArray, *, ways: bool = False) -> Check:
+    """The check that the tool is half a kerf away from all finished parts at some ticks, to the tolerance.
+
+    With ``ways`` that is so all along the way to the next tick.
+    """
+    evidence = comparison.evidence
+    process, parts, places = evidence.program.process, comparison.parts, evidence.sheet[ticks]
+    steps = np.stack([places, evidence.sheet[ticks + ways]], axis=1)
+    shapes = np.asarray(shapely.linestrings(steps) if ways else shapely.points(places))
+    which, part = shapely.STRtree(parts).query(shapes, predicate="dwithin", distance=process.kerf)
     near = np.array(parts, dtype=object)[part]
-    away = shapely.distance(points[which], near)
-    inside = shapely.distance(points[which], shapely.boundary(near))
-    depth = process.kerf / 2.0 - np.where(away > 0.0, away, -inside)
-    limit = (process.tolerance + ACCURACY) * 1e6
+    away = shapely.distance(shapes[which], near)
+    # A way that crosses an edge is as deep in the part as the deeper of its ends.
+    ends = [shapely.points(steps[which, end]) for end in range(2)]
+    depths = [np.where(shapely.intersects(end, near), shapely.distance(end, shapely.boundary(near)), 0) for end in ends]
+    depth = process.kerf / 2.0 - np.where(away > 0.0, away, -np.max(depths, axis=0))
+    limit = (process.tolerance + process.chord_tolerance * ways + ACCURACY) * 1e6
     return at_most(evidence, name, depth * 1e6, limit, "um too near", ticks=ticks[which])
 
 

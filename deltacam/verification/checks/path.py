@@ -7,13 +7,17 @@ from typing import Final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from deltacam.model import Array, Check, IntArray
+from deltacam.model import Array, BlockKind, Check, IntArray, Operation
 from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison, Target
-from deltacam.verification.evidence import Evidence, Run, to_sheet
-from deltacam.verification.kerf_path import ACCURACY, all_corners, sharp_corners
+from deltacam.verification.evidence import MOVING_KINDS, Evidence, to_sheet
+from deltacam.verification.kerf_path import ACCURACY, all_corners, flattened, sharp_corners
 from deltacam.verification.near import Lines
 from deltacam.verification.way import motion
+
+_LOOPS: Final = frozenset({BlockKind.LOOP})
+_TABS: Final = frozenset({BlockKind.TAB})
+_ALONG_KINDS: Final = frozenset({BlockKind.CUT, BlockKind.ENGRAVE}) | _TABS
 
 LENGTH_TOLERANCE: Final = 0.02
 """How much longer or shorter than its kerf path a cut may be, beside what the tolerances allow."""
@@ -22,8 +26,9 @@ LENGTH_TOLERANCE: Final = 0.02
 def deviation(comparison: Comparison) -> Check:
     """How far the tool is from the path of the contour that it cuts or engraves, at every tick with the laser on."""
     limit = comparison.evidence.program.process.tolerance
-    rows = [_ticks(target.runs, including_end=True) for target in comparison.targets]
-    return _worst_distance(comparison, "deviation at ticks", rows, comparison.evidence.sheet, limit)
+    evidence = comparison.evidence
+    rows = [_joined([evidence.on_path(run) for run in target.runs]) for target in comparison.targets]
+    return _worst_distance(comparison, "deviation at ticks", rows, evidence.sheet, limit)
 
 
 def deviation_between(comparison: Comparison) -> Check:
@@ -31,7 +36,7 @@ def deviation_between(comparison: Comparison) -> Check:
     evidence = comparison.evidence
     process = evidence.program.process
     limit = process.tolerance + process.chord_tolerance
-    rows = [_ticks(target.runs, including_end=False) for target in comparison.targets]
+    rows = [_joined([_between(evidence.on_path(run)) for run in target.runs]) for target in comparison.targets]
     places = to_sheet(evidence.program, evidence.between)
     return _worst_distance(comparison, "deviation between ticks", rows, places, limit)
 
@@ -44,7 +49,7 @@ def uncut(comparison: Comparison) -> Check:
     """
     process = comparison.evidence.program.process
     near = process.tolerance + process.chord_tolerance + ACCURACY
-    found = [(*_uncut(comparison.evidence, target, near), target.contour) for target in comparison.targets]
+    found = [(*_uncut(comparison.evidence, target, near), target.contour) for target in comparison.due]
     total = 1e3 * sum(left for left, _, _ in found)
     if not total:
         return Check("uncut length", True, 0.0, 0.0, "mm")
@@ -61,15 +66,30 @@ def cut_length(comparison: Comparison) -> Check:
     for target in comparison.targets:
         slack = _length_slack(target) * (process.tolerance + process.chord_tolerance)
         closed = [ring if not target.contour.curve.closed else np.vstack([ring, ring[:1]]) for ring in target.rings]
-        nominal = sum(_length(line) for line in closed)
-        length = sum(_length(comparison.evidence.sheet[run.first : run.end + 1]) for run in target.runs)
-        off = max(abs(length - nominal) - slack, 0.0) / nominal if nominal else float(length > 0.0)
+        passes = process.passes if target.contour.operation is Operation.CUT else 1
+        nominal = passes * sum(_length(line) for line in closed)
+        length, unclear = _length_along(comparison.evidence, target)
+        off = max(abs(length - nominal) - slack - unclear, 0.0) / nominal if nominal else float(length > 0.0)
         percent = 100.0 * off
         if target.runs and percent > (worst.worst or 0.0):
             words = f"{target.contour.where}: {1e3 * length:.3f} mm for {1e3 * nominal:.3f} mm"
             passed, tick = percent <= limit, target.runs[0].first
             worst = at_tick(comparison.evidence, name, passed, percent, limit, "% off", tick=tick, where=words)
     return worst
+
+
+def _length_along(evidence: Evidence, target: Target) -> tuple[float, float]:
+    """How long the cuts of a contour are, tabs included, and how far that is unclear, m.
+
+    A cut begins and ends between two ticks where a lead, a loop or an overcut is beside it.
+    """
+    length, unclear = 0.0, 0.0
+    for run in target.runs:
+        for first, end in evidence.stretches(run, _ALONG_KINDS):
+            length += _length(evidence.sheet[first : end + 1])
+            beside = [first - 1] * (first > run.begin) + [end - 1]
+            unclear += float(evidence.speed[beside].sum()) / evidence.rate
+    return length, unclear
 
 
 def _length_slack(target: Target) -> float:
@@ -86,9 +106,13 @@ def _length(line: Array) -> float:
     return float(np.hypot(*np.diff(line, axis=0).T).sum())
 
 
-def _ticks(runs: tuple[Run, ...], *, including_end: bool) -> IntArray:
-    ranges = [np.arange(run.first, run.end + including_end) for run in runs]
-    return np.concatenate([np.empty(0, dtype=np.int64), *ranges])
+def _joined(ticks: list[IntArray]) -> IntArray:
+    return np.concatenate([np.empty(0, dtype=np.int64), *ticks])
+
+
+def _between(ticks: IntArray) -> IntArray:
+    """Those of the ticks that the next tick follows."""
+    return np.asarray(ticks[:-1][np.diff(ticks) == 1])
 
 
 def _worst_distance(comparison: Comparison, name: str, rows: list[IntArray], places: Array, limit: float) -> Check:
@@ -112,15 +136,37 @@ def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tupl
     if target.path is None:
         return 0.0, (0.0, 0.0)  # `cut_once` reports it
     samples, share = target.path.samples, target.path.share
-    if not target.runs:
+    cuts = [span for run in target.runs for span in evidence.stretches(run, MOVING_KINDS)]
+    if not cuts:
         return float(share.sum()), (float(samples[0, 0]), float(samples[0, 1]))
-    cut = Lines([motion(evidence, run, near / 8.0) for run in target.runs], closed=False)
-    distance = cut.distance(samples, exact_above=near / 2.0)
+    distance = _lines(evidence, cuts, near).distance(samples, exact_above=near / 2.0)
     left = np.flatnonzero(distance > near)
+    tabs = [span for run in target.runs for span in evidence.stretches(run, _TABS)]
+    if tabs and len(left):
+        left = left[_lines(evidence, tabs, near).distance(samples[left], exact_above=near / 2.0) > near]
     left = left[~_in_rounded_corner(target, samples[left], distance[left], near)]
+    if any(evidence.stretches(run, _LOOPS) for run in target.runs):
+        left = left[~_burnt_at_corner(evidence, target, samples[left], distance[left], near)]
     if not len(left):
         return 0.0, (0.0, 0.0)
     return float(share[left].sum()), (float(samples[left[0], 0]), float(samples[left[0], 1]))
+
+
+def _burnt_at_corner(evidence: Evidence, target: Target, points: Array, distance: Array, near: float) -> np.ndarray:
+    """Which ``points`` (M, 2) of a round about a drawn corner are burnt by the beam, whose way passes at ``distance``.
+
+    A loop goes straight on where the path turns about the corner, and back from the other side.
+    """
+    half = evidence.program.process.kerf / 2.0
+    tips, _ = sharp_corners(flattened(target.contour), closed=target.contour.curve.closed)
+    if not len(points) or not len(tips):
+        return np.zeros(len(points), dtype=bool)
+    away, _ = cKDTree(tips).query(points)
+    return np.asarray((away <= half + near) & (distance <= half))
+
+
+def _lines(evidence: Evidence, spans: list[tuple[int, int]], near: float) -> Lines:
+    return Lines([motion(evidence, first, end, near / 8.0) for first, end in spans], closed=False)
 
 
 def _in_rounded_corner(target: Target, points: Array, distance: Array, near: float) -> np.ndarray:

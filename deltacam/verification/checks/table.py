@@ -6,7 +6,19 @@ from collections.abc import Callable
 from typing import Final
 
 from deltacam.model import Check
-from deltacam.verification.checks import contours, file, laser, limits, overlap, parts, path, reach
+from deltacam.verification.checks import (
+    contours,
+    file,
+    heat,
+    laser,
+    limits,
+    overlap,
+    parts,
+    path,
+    reach,
+    reduced,
+    stretches,
+)
 from deltacam.verification.comparison import Comparison
 from deltacam.verification.evidence import Evidence
 
@@ -26,6 +38,7 @@ OF_SETPOINTS: Final[tuple[Callable[[Evidence], Check], ...]] = (
     laser.laser_on,
     laser.pierce_before_cut,
     laser.cut_after_pierce,
+    stretches.in_order,
     reach.poses,
 )
 """Checks that need the rows alone."""
@@ -45,6 +58,7 @@ OF_POSITIONS: Final[tuple[Callable[[Evidence], Check], ...]] = (
     limits.feed,
     laser.pierce_at_rest,
     laser.laser_at_rest,
+    heat.time_to_spread,
     laser.line_energy,
 )
 """Checks that need the tool's position at every tick."""
@@ -52,15 +66,19 @@ OF_POSITIONS: Final[tuple[Callable[[Evidence], Check], ...]] = (
 OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     contours.known_contours,
     contours.cut_once,
+    contours.resumed,
     path.deviation,
     path.deviation_between,
     path.uncut,
     path.cut_length,
     overlap.cut_again,
+    reduced.reduced_feed,
     parts.part_size,
     parts.part_edge,
     parts.pierce_outside,
     parts.leads_outside,
+    stretches.overcut,
+    stretches.tab_width,
     contours.closed,
     contours.holes_first,
     contours.contours_last,
