@@ -6,8 +6,9 @@ the longest. Where even that is short in a hole, the tool comes from its middle 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ import shapely
 from deltacam.cutting.leads import shapes, sizes
 from deltacam.cutting.leads.shapes import Ends
 from deltacam.cutting.leads.sizes import Ability, Size
-from deltacam.cutting.leads.starts import starts
+from deltacam.cutting.leads.starts import starts_off
 from deltacam.cutting.leads.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import (
@@ -107,6 +108,7 @@ def approaches(
     waste: Waste,
     able: Callable[[Array], Ability],
     tick: float,
+    clear: Mapping[int, Sequence[Curve]] = MappingProxyType({}),
 ) -> tuple[list[tuple[Approach, ...]], tuple[Finding, ...]]:
     """The ways in which each cut may begin and end, the best leads only, and what a person should know of them.
 
@@ -117,15 +119,18 @@ def approaches(
         waste: where they may lie.
         able: what the tool can do at places (N, 2) m.
         tick: of the controller, s; an overcut is longer by the way of one.
+        clear: by number of contour, edges on which its cut should not begin; it does where there is nothing else.
 
     Returns:
-        for every cut its approaches, none for what is open or engraved.
+        for every cut its approaches, none for what is open or engraved, or may begin anywhere without leads.
     """
     closed = [k for k, cut in enumerate(cuts) if cut.curve.closed and cut.operation is Operation.CUT]
     found: list[tuple[Approach, ...]] = [() for _ in cuts]
-    if not closed or not has_leads(process):
+    if not has_leads(process):
+        closed = [k for k in closed if cuts[k].contour in clear]
+    if not closed:
         return found, ()
-    rows = _rows(cuts, closed, contours, process, tick)
+    rows = _rows(cuts, closed, contours, process, tick, clear)
     feed = np.array([cut.feed or process.feed for cut in cuts])[rows.cut]
     deviation = 0.4 * process.tolerance
     at_begin, at_end = able(rows.begin.place), able(rows.end.place)
@@ -163,7 +168,12 @@ def _overcut(process: Process, cut: Cut, tick: float) -> float:
 
 
 def _rows(
-    cuts: Sequence[Cut], closed: Sequence[int], contours: Sequence[Contour], process: Process, tick: float
+    cuts: Sequence[Cut],
+    closed: Sequence[int],
+    contours: Sequence[Contour],
+    process: Process,
+    tick: float,
+    clear: Mapping[int, Sequence[Curve]],
 ) -> _Rows:
     """All places where the closed cuts may begin, with both ends of their leads."""
     drawn = {contour.number: contour for contour in contours}
@@ -171,7 +181,8 @@ def _rows(
     columns: list[tuple[Any, ...]] = []
     for index in closed:
         cut = cuts[index]
-        segment, distance = starts(cut.curve, process.start, count=count, rounding=0.51 * process.kerf)
+        edges = clear.get(cut.contour, ())
+        segment, distance = starts_off(edges, cut.curve, process.start, count=count, kerf=process.kerf)
         place, heading = curves.evaluate(cut.curve, segment, distance)
         far, onwards = _beyond(cut.curve, segment, distance, _overcut(process, cut, tick))
         side = np.full(len(segment), waste_side(cut, drawn[cut.contour], process.kerf))
