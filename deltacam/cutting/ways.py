@@ -108,7 +108,7 @@ def _shared(cuts: Sequence[Cut], contours: Sequence[Contour], process: Process) 
     asked = has_leads(process) or process.tabs is not None or process.corner == "loop"
     if not left or not asked:
         return found
-    what = f"{len(left)} open cuts are left of contours with shared edges and have no leads, loops and tabs: they begin "
+    what = f"{len(left)} open cuts are left of contours with shared edges, without leads, loops and tabs: they begin "
     what += "and end in the kerf of another cut"
     return found._replace(findings=(*found.findings, Finding(what, where=left[0].where, kind="common")))
 

@@ -13,7 +13,7 @@ from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
 from deltacam.verification.checks import file
 from deltacam.verification.checks.contours import same_drawing
-from deltacam.verification.checks.table import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
+from deltacam.verification.checks.table import OF_COMMON_EDGES, OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
 from deltacam.verification.comparison import Comparison, compare
 from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.kerf_effects import kerf_effects
@@ -75,6 +75,8 @@ def verify(
         checks += [check(evidence) for check in OF_POSITIONS]
         comparison = _compared(evidence, drawing, findings)
         checks += [check(comparison) for check in OF_CONTOURS if comparison]
+        if evidence.program.process.common_edges:
+            checks += [check(comparison) for check in OF_COMMON_EDGES if comparison]
         findings += _not_cut_again(comparison)
         sizes = comparison.sizes if comparison else ()
         effects = _effects(comparison) if comparison else ()
