@@ -19,7 +19,7 @@ from deltacam.cutting.leads.reach import Reach
 from deltacam.cutting.leads.waste import Waste
 from deltacam.cutting.order import Ordered, effort_for, order
 from deltacam.cutting.shaping import looped, repeated, tabbed
-from deltacam.cutting.shared import Shared, share_edges
+from deltacam.cutting.shared import SHORTEST, Shared, share_edges
 from deltacam.model import Array, Contour, Cut, Finding, Placement, Process, Search
 from deltacam.robot.rapid import Rapids
 
@@ -103,7 +103,8 @@ def _shared(cuts: Sequence[Cut], contours: Sequence[Contour], process: Process) 
     """The cuts with common edges cut once where the process asks for it, and what that takes away from others."""
     if not process.common_edges:
         return Shared(tuple(cuts), {}, {}, ())
-    found = share_edges(cuts, contours, kerf=process.kerf, tolerance=_APART * process.tolerance)
+    shortest = SHORTEST + 2.0 * process.kerf
+    found = share_edges(cuts, contours, kerf=process.kerf, tolerance=_APART * process.tolerance, shortest=shortest)
     left = [cut for cut in found.cuts if cut.contour in found.after and not cut.curve.closed]
     asked = has_leads(process) or process.tabs is not None or process.corner == "loop"
     if not left or not asked:

@@ -17,7 +17,7 @@ from deltacam.motion.parts import parts
 from deltacam.motion.power import powers
 from deltacam.motion.route import Limits
 from deltacam.motion.schedule import Drawn, Move
-from deltacam.motion.tape import Setpoints, Tape
+from deltacam.motion.tape import NUMBER, Setpoints, Tape
 from deltacam.units import to_um
 
 if TYPE_CHECKING:
@@ -96,21 +96,43 @@ def _taped(
         for hole in holes.get(index, ()):
             tape.travel(_in_machine(hole, placement).points[0], rapid, where=f"the way to contour {hole.contour}")
             tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=hole)
-        for number, part in enumerate(parts(cut)):
-            curve = curves.transform(part.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
-            if not part.is_tab:
-                pierce = 0 if holes and number == 0 else way.pierce
-                tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
-                tape.rest(BlockKind.RAPID, ticks=0 if number else _ticks(cut.wait, robot))
-                tape.rest(BlockKind.PIERCE, ticks=pierce, power=power, cut=cut)
-                tape.rest(BlockKind.RAPID, ticks=0 if pierce else apart)
-            pace = _pace(robot, limits, (*curve.points[0], placement.z))
-            drawn = Drawn(curve, part.stretch, part.speed, process.corner, deviation, pace, placement.z)
-            tape.work(drawn, limits, power=power, cut=cut)
-            tape.rest(BlockKind.RAPID, ticks=apart)
+        _put(tape, cut, process, placement, _Own(way, limits, power, deviation, bool(holes), apart))
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
     return tape
+
+
+class _Own(NamedTuple):
+    """What holds for one cut: how it is run, within what, and for how many ticks the tool rests around its parts."""
+
+    way: _Way
+    limits: Limits
+    power: float
+    deviation: float
+    is_pierced: bool
+    apart: int
+
+
+def _put(tape: Tape, cut: Cut, process: Process, placement: Placement, own: _Own) -> None:
+    """Put a cut on the tape: the way there, and every part of it from rest to rest."""
+    robot, rapid = tape.robot, rapid_limits(tape.robot)
+    every = list(parts(cut))
+    for number, part in enumerate(every):
+        curve = curves.transform(part.curve, rotation=placement.rotation, shift=(placement.x, placement.y))
+        before, after = (BlockKind.TAB if inside else BlockKind.RAPID for inside in (number, part is not every[-1]))
+        if not part.is_tab:
+            pierce = 0 if own.is_pierced and number == 0 else own.way.pierce
+            tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
+            tape.rest(BlockKind.RAPID, ticks=0 if number else _ticks(cut.wait, robot))
+            tape.rest(BlockKind.PIERCE, ticks=pierce, power=own.power, cut=cut)
+            tape.rest(before, ticks=0 if pierce else own.apart, cut=cut if number else None)
+        pace = _pace(robot, own.limits, (*curve.points[0], placement.z))
+        drawn = Drawn(curve, part.stretch, part.speed, process.corner, own.deviation, pace, placement.z)
+        tape.work(drawn, own.limits, power=own.power, cut=cut)
+        # A lead-out behind a cut without an overcut may be passed within a tick: then its end must not count as cut.
+        beside = part.stretch[-1] == NUMBER[BlockKind.LEAD_OUT] and process.overcut == 0.0
+        tape.rest(BlockKind.LEAD_OUT, ticks=1 if beside else 0, cut=cut)
+        tape.rest(after, ticks=own.apart, cut=None if part is every[-1] else cut)
 
 
 def _first_pierces(cuts: Sequence[Cut]) -> dict[int, list[Cut]]:

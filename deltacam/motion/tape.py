@@ -150,8 +150,9 @@ def _moved(step: _Step, run: Run) -> _Rows:
         return _Rows(run.q, np.full(len(run.q), NUMBER[step.kind]), np.full(len(run.q), step.power))
     kind = run.stretch.copy()
     # The laser is off before the lead-out begins: the overcut is longer than asked for by what a tick can take.
-    ends = (kind[:-1] == NUMBER[BlockKind.OVERCUT]) & (kind[1:] == NUMBER[BlockKind.LEAD_OUT])
-    kind[:-1][ends] = NUMBER[BlockKind.LEAD_OUT]
+    last = step.motion.path.stretch[-1] if isinstance(step.motion, Move) and isinstance(step.motion.path, Drawn) else -1
+    ends = (kind == NUMBER[BlockKind.OVERCUT]) & (np.append(kind[1:], last) == NUMBER[BlockKind.LEAD_OUT])
+    kind[ends] = NUMBER[BlockKind.LEAD_OUT]
     return _Rows(run.q, kind, np.where(np.isin(kind, _DARK), 0.0, step.power))
 
 

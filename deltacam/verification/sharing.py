@@ -10,13 +10,14 @@ import shapely
 
 from deltacam.model import Array, Contour
 from deltacam.verification.evidence import MOVING_KINDS, Evidence
+from deltacam.verification.near import Lines
 from deltacam.verification.runs import Run
 from deltacam.verification.way import motion
 
 BETWEEN_TICKS: Final = 0.5e-6
 """How far ways may be off between ticks, m."""
 
-_AROUND: Final = 0.5  # of its path: what is shorter does not go around
+_SHORTEST: Final = 1e-3  # m; shorter edges are not shared
 
 
 class Beside(NamedTuple):
@@ -47,27 +48,29 @@ class Outline(NamedTuple):
     runs: tuple[Run, ...]
 
 
-def gap(evidence: Evidence, run: Run) -> float:
-    """How far the second half of a run stays from where the run starts, m."""
-    start, way = evidence.sheet[run.first], evidence.sheet[(run.first + run.end) // 2 : run.end + 1]
-    return float(shapely.distance(shapely.Point(start), shapely.LineString(np.concatenate([way, way[-1:]]))))
-
-
 def open_runs(evidence: Evidence, outline: Outline) -> tuple[Run, ...]:
-    """The runs of an outline that do not go around and come back to where they started.
+    """The runs of an outline that do not go around any of its rings, tabs included.
 
-    Without edges that are shared there are none: what does not come back is wrong then.
+    Without edges that are shared there are none: what leaves a part of its ring out is wrong then.
     """
-    process = evidence.program.process
-    if not process.common_edges or not outline.rings:
+    if not evidence.program.process.common_edges or not outline.rings:
         return ()
-    shortest = min(_length(np.vstack([ring, ring[:1]])) for ring in outline.rings)
-    return tuple(
-        run
-        for run in outline.runs
-        if _length(evidence.sheet[run.first : run.end + 1]) < _AROUND * shortest
-        or gap(evidence, run) > process.tolerance
-    )
+    return tuple(run for run in outline.runs if not any(_goes_around(evidence, run, ring) for ring in outline.rings))
+
+
+def _goes_around(evidence: Evidence, run: Run, ring: Array) -> bool:
+    """Whether a run leaves out no more of a ring than loops at its corners, and what is too short to be shared."""
+    process = evidence.program.process
+    near = process.tolerance + process.chord_tolerance
+    path = Lines([ring], closed=True)
+    way = Lines([motion(evidence, run.first, run.end, BETWEEN_TICKS)], closed=False)
+    far = way.distance(path.samples, exact_above=near / 2.0) > near
+    if far.all():
+        return False
+    first = int(np.argmin(far))  # a sample that is near, so that no stretch lies across the ends
+    far, share = np.roll(far, -first), np.roll(path.share, -first)
+    longest = np.bincount(np.cumsum(~far)[far], share[far], minlength=1).max()
+    return bool(longest < _SHORTEST + 0.5 * np.pi * process.kerf)
 
 
 def burnt(evidence: Evidence, run: Run) -> tuple[Array, ...]:
@@ -106,7 +109,3 @@ def _closed(ring: Array) -> Array:
 
 def _ring(ring: Array) -> shapely.LineString:
     return shapely.LineString(_closed(ring))
-
-
-def _length(line: Array) -> float:
-    return float(np.hypot(*np.diff(line, axis=0).T).sum())

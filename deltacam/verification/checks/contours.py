@@ -11,7 +11,7 @@ from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison, Target
 from deltacam.verification.evidence import Evidence
 from deltacam.verification.runs import Run
-from deltacam.verification.sharing import burnt, gap
+from deltacam.verification.sharing import burnt
 
 
 def same_drawing(program: Program, drawing: Drawing) -> Check:
@@ -76,21 +76,31 @@ def closed(comparison: Comparison) -> Check:
     evidence = comparison.evidence
     closed_ones = [target for target in comparison.targets if target.contour.curve.closed]
     runs = [run for target in closed_ones for run in target.runs]
-    gaps = [_gap(evidence, target, run) for target in closed_ones for run in target.runs]
+    gaps = [
+        _away(evidence, target, run) if run in target.open_runs else _gap(evidence, run)
+        for target in closed_ones
+        for run in target.runs
+    ]
     limit, ticks = evidence.program.process.tolerance, np.array([run.end for run in runs], dtype=np.int64)
     return at_most(evidence, "gap at the end of a cut", np.array(gaps) * 1e6, limit * 1e6, "um", ticks=ticks)
 
 
-def _gap(evidence: Evidence, target: Target, run: Run) -> float:
-    """How far a run stays from where it starts, or, where it is open, its ends from other cuts, m."""
-    found = gap(evidence, run)
+def _gap(evidence: Evidence, run: Run) -> float:
+    """How far the second half of a run stays from where the run comes to its contour, m."""
+    sheet, middle = evidence.sheet, (run.first + run.end) // 2
+    start = sheet[max(run.first - 1, run.begin) : run.first + 1]
+    start, way = (np.concatenate([line, line[-1:]]) for line in (start, sheet[middle : run.end + 1]))
+    return float(shapely.distance(shapely.LineString(start), shapely.LineString(way)))
+
+
+def _away(evidence: Evidence, target: Target, run: Run) -> float:
+    """How far the ends of a run that does not go around are from other cuts, m."""
     ways = [way for cut in target.beside for way in cut.ways]
-    ways += [way for one in target.open_runs if one != run for way in burnt(evidence, one)]
-    if run not in target.open_runs or not ways:
-        return found
+    ways += [way for one in target.runs if one != run for way in burnt(evidence, one)]
+    if not ways:
+        return _gap(evidence, run)
     ends = shapely.points(evidence.sheet[[run.first, run.end]])
-    lines = shapely.linestrings(np.concatenate(ways), indices=np.repeat(np.arange(len(ways)), [*map(len, ways)]))
-    return min(found, float(shapely.distance(shapely.multilinestrings(lines), ends).max()))
+    return float(shapely.distance(shapely.multilinestrings([*map(shapely.LineString, ways)]), ends).max())
 
 
 def holes_first(comparison: Comparison) -> Check:
