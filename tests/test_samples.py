@@ -31,6 +31,7 @@ EXPECTED = {
     "bracket": Expected(contours=13, parts=1, deepest=1, ignored=1),
     "gear": Expected(contours=8, parts=1, deepest=1, ignored=0),
     "nameplate": Expected(contours=53, parts=1 + 3, deepest=2, ignored=0),
+    "panels": Expected(contours=27, parts=9, deepest=1, ignored=0),
     "sheet": Expected(contours=184, parts=92, deepest=4, ignored=0),
     "snowflake": Expected(contours=8, parts=1, deepest=1, ignored=0),
 }
