@@ -230,9 +230,59 @@ def sheet(model: Any) -> None:
         model.add_blockref("QUARTER", (0, 0), dxfattribs={"xscale": x, "yscale": y, "layer": "CUT"})
 
 
+def sign(model: Any, at: Point) -> None:
+    """A plate with holes from small to large, a slot, and a name that is engraved in single lines."""
+    x, y = at
+    polyline(model, shapes.box(94.0, 44.0, 4.0, at=(x + 47, y + 22)))
+    for place_x in (6, 88):
+        for place_y in (6, 38):
+            circle(model, x + place_x, y + place_y, 1.6)
+    polyline(model, place(shapes.slot(26.0, 5.0), 0.0, (x + 62, y + 10)))
+    for i, radius in enumerate((0.6, 1.0, 1.5, 2.2)):
+        circle(model, x + 16 + 8 * i, y + 10, radius)
+    for line in shapes.strokes("DELTA 300", 10.0, (x + 5.5, y + 22.0)):
+        model.add_lwpolyline([tidy(*point) for point in line], dxfattribs={"layer": "ENGRAVE"})
+
+
+def angle(model: Any, at: Point, turn: float) -> None:
+    """A bracket with two legs of 44 mm, 14 mm wide, and a hole in each and in the corner."""
+    corners = [(0, 0, 3), (44, 0, 3), (44, 14, 3), (14, 14, 5), (14, 44, 3), (0, 44, 3)]
+    middle = place([(x - 22, y - 22, bend) for x, y, bend in shapes.rounded(corners)], turn, at)
+    polyline(model, middle)
+    for x, y, _ in place([(-15, -15, 0), (14, -15, 0), (-15, 14, 0)], turn, at):
+        circle(model, x, y, 2.2)
+
+
+def mixed(model: Any) -> None:
+    """A sheet of mixed parts, 4 mm apart: for leads, loops at sharp corners, tabs, and a name that is engraved."""
+    model.doc.layers.add("ENGRAVE", color=1)
+    sign(model, (0, 0))
+    angle(model, (120, 22), 0.0)
+    angle(model, (138, 40), math.pi)
+    tooth = ((18.0, -0.34), (22.0, -0.17), (22.0, 0.17), (18.0, 0.34))
+    wheel = [(*polar(r, math.tau * (k + share) / 16), 0.0) for k in range(16) for r, share in tooth]
+    polyline(model, place(wheel, 0.0, (22, 70)))
+    polyline(model, place(shapes.box(9.0, 9.0), math.pi / 4, (22, 70)))
+    for k in range(4):
+        circle(model, *(22 + 11 * math.cos(math.pi * k / 2), 70 + 11 * math.sin(math.pi * k / 2)), 2.5)
+    for radius in (22.0, 15.0, 11.0, 5.0):
+        circle(model, 70, 70, radius)
+    for turn in (0.0, math.pi):  # two triangles along their long sides, and what fits beside them
+        polyline(model, place([(-31, -14, 0), (30, -14, 0), (-31, 10, 0)], turn, (128.5, 80)))
+    for radius in (6.0, 2.0):
+        circle(model, 104, 56, radius)
+    for x, tips, valley in ((22, 5, 9.0), (68, 6, 11.0), (112, 8, 13.0)):
+        polyline(model, place(shapes.star(22.0, valley, tips), 0.0, (x, 121)))
+        circle(model, x, 121, 3.0)
+    for y in (103.5, 119.5, 135.5):
+        polyline(model, place(shapes.slot(8.0, 12.0), 0.0, (148, y)))
+        polyline(model, place(shapes.slot(8.0, 4.0), 0.0, (148, y)))
+
+
 DRAWINGS: Final[dict[str, Callable[[Any], None]]] = {
     "bracket": bracket,
     "gear": gear,
+    "mixed": mixed,
     "nameplate": nameplate,
     "panels": panels,
     "sheet": sheet,

@@ -202,3 +202,30 @@ def _edge(start: Point, end: Point, pull: float) -> Bezier:
         (start[0] + share * x - pull * y, start[1] + share * y + pull * x) for share in (1.0 / 3.0, 2.0 / 3.0)
     )
     return start, first, second, end
+
+
+def star(tip: float, valley: float, points: int) -> list[Vertex]:
+    """A star about the origin with ``points`` sharp tips, one of them up."""
+    step = math.pi / points
+    return [(*polar((tip, valley)[k % 2], math.pi / 2 + k * step), 0.0) for k in range(2 * points)]
+
+
+def strokes(text: str, height: float, at: Point) -> list[list[Point]]:
+    """A word of single lines, as a laser engraves it, its base line beginning ``at``."""
+    scale, found = height / 6.0, []
+    for place, name in enumerate(text):
+        for line in _STROKES.get(name, "").split(","):
+            points = [(6.0 * place + float(x), float(y)) for x, y in line.split()]
+            found.append([(at[0] + scale * x, at[1] + scale * y) for x, y in points])
+    return [line for line in found if line]
+
+
+_STROKES: Final = {  # 4 units wide and 6 high; one digit for each of x and y, lines apart by a comma
+    "D": "00 30 41 45 36 06 00",
+    "E": "40 00 06 46,03 33",
+    "L": "06 00 40",
+    "T": "06 46,26 20",
+    "A": "00 26 40,12 32",
+    "3": "06 46 24 34 43 41 30 10 01",
+    "0": "10 01 05 16 36 45 41 30 10",
+}

@@ -165,8 +165,9 @@ def test_every_option_of_every_command_has_its_row() -> None:
     page = (DOCS / "reference" / "commands.md").read_text()
     name = r"^##+ deltacam ([a-z]+(?: [a-z]+)?)\b"
     sections = dict(re.findall(rf"{name}(.*?)(?=^##|\Z)", page, flags=re.DOTALL | re.MULTILINE))
-    studies = importlib.import_module("deltacam_cli.robot").COMMANDS
-    assert sorted(sections) == sorted([*command_line.COMMANDS, *(f"robot {name}" for name in studies)])
+    groups = {name: importlib.import_module(f"deltacam_cli.{name}").COMMANDS for name in ("robot", "process")}
+    inside = [f"{group} {name}" for group, names in groups.items() for name in names]
+    assert sorted(sections) == sorted([*command_line.COMMANDS, *inside])
     for command, section in sections.items():
         found: click.Command = command_line.cli
         for name in command.split():

@@ -13,7 +13,7 @@ import pytest
 
 import deltacam
 from deltacam.errors import ProcessError
-from deltacam.model import Drawing, Outcome
+from deltacam.model import BlockKind, Drawing, Operation, Outcome
 from deltacam.pipeline import plan
 
 SAMPLES = Path(__file__).parents[1] / "samples"
@@ -22,14 +22,16 @@ DRAWINGS = sorted(path.stem for path in SAMPLES.glob("*.dxf"))
 
 class Expected(NamedTuple):
     contours: int
-    parts: int  # outlines: what lies in an even number of others
+    parts: int  # outlines: what is cut and lies in an even number of others
     deepest: int
     ignored: int
+    engraved: int = 0
 
 
 EXPECTED = {
     "bracket": Expected(contours=13, parts=1, deepest=1, ignored=1),
     "gear": Expected(contours=8, parts=1, deepest=1, ignored=0),
+    "mixed": Expected(contours=55, parts=15, deepest=3, ignored=0, engraved=11),
     "nameplate": Expected(contours=53, parts=1 + 3, deepest=2, ignored=0),
     "panels": Expected(contours=27, parts=9, deepest=1, ignored=0),
     "sheet": Expected(contours=184, parts=92, deepest=4, ignored=0),
@@ -66,10 +68,12 @@ def test_the_script_draws_the_same_bytes_twice_and_those_that_are_kept(tmp_path:
 def test_a_sample_states_its_unit_and_nests_as_expected(name: str) -> None:
     drawing = read(name)
     depth = np.array([contour.depth for contour in drawing.contours])
+    engraved = np.array([contour.operation is Operation.ENGRAVE for contour in drawing.contours])
     ignored = [entry for entry in drawing.ledger if entry.outcome is Outcome.IGNORED]
     assert drawing.unit_in_words == "mm (header)"
     assert not [entry for entry in drawing.ledger if entry.outcome is Outcome.LOST]
-    assert Expected(len(depth), int(np.sum(depth % 2 == 0)), int(depth.max()), len(ignored)) == EXPECTED[name]
+    outlines = int(np.sum((depth % 2 == 0) & ~engraved))
+    assert Expected(len(depth), outlines, int(depth.max()), len(ignored), int(engraved.sum())) == EXPECTED[name]
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
@@ -77,7 +81,7 @@ def test_the_program_of_a_sample_passes_every_check(name: str) -> None:
     planned = plan(SAMPLES / f"{name}.dxf")
     failed = [check for check in planned.report.checks if not check.passed]
     assert not failed
-    assert planned.report.summary["contours_cut"] == EXPECTED[name].contours
+    assert planned.report.summary["contours_cut"] == EXPECTED[name].contours - EXPECTED[name].engraved
 
 
 def test_the_sample_robot_and_process_plan_a_sample() -> None:
@@ -85,6 +89,13 @@ def test_the_sample_robot_and_process_plan_a_sample() -> None:
     assert planned.report.passed
     assert planned.program.robot.name == "my-robot"
     assert planned.program.process.name == "my-steel-2mm"
+
+
+def test_the_mixed_sheet_is_cut_with_all_that_a_cut_can_have() -> None:
+    planned = plan(SAMPLES / "mixed.dxf", process=SAMPLES / "mixed.toml", what_if=False)
+    assert planned.report.passed
+    assert planned.report.summary["contours_cut"] == 44
+    assert {block.kind for block in planned.program.blocks} == set(BlockKind)
 
 
 def test_the_flanks_of_the_gear_are_involutes() -> None:

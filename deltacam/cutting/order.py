@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,10 @@ from deltacam.model import Cut, Heat, IntArray, Operation
 
 _FINER: Final = 6  # rounds in which the places of a cut that may begin anywhere come nearer to each other
 _TRY_TIME: Final = 1e-3  # s, of one try, and of looking at one cut before, on the machine of benchmarks/README.md
-_TRIES_PER_CUT: Final = 4
+_TRIES_PER_CUT: Final = 5
+_TRIES_PER_CUT_OF_MANY: Final = 1.25
+_MANY: Final = 700
+_FEWEST_TRIES: Final = 100
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,7 +51,8 @@ class Ordered:
 
 def default_effort(contours: int) -> int:
     """How many tries are made where nobody says."""
-    return _TRIES_PER_CUT * contours
+    more = max(0, contours - _MANY)
+    return max(_FEWEST_TRIES, round(_TRIES_PER_CUT * (contours - more) + _TRIES_PER_CUT_OF_MANY * more))
 
 
 def effort_for(seconds: float, contours: int) -> int:
@@ -91,24 +95,64 @@ def order(
     """
     if not cuts:
         return Ordered((), (), (), 0.0, ())
-    kinds = [_stage(cut, after) for cut in cuts]
-    stages = [sorted(set(kinds)).index(kind) for kind in kinds]
-    parts = [_outermost(cut.contour, parents) if together else 0 for cut in cuts]
     choice = Choice.of(cuts, places)
-    rule = Precedence.between(cuts, parents, stages, _by_part(after, parents) if together else after)
-
-    def problem() -> Problem:
-        begins, ends = np.vstack([choice.begins, start]), np.vstack([choice.ends, start])
-        first = np.append(choice.first, len(begins))
-        return Problem(begins, ends, first, rule, np.array([*stages, max(stages)]), np.array([*parts, -1]), cost, heat)
-
+    whole = _Whole.of(cuts, parents, start, cost, together=together, heat=heat, after=after)
     effort = default_effort(len(cuts)) if effort is None else effort
-    found = np.array(search(problem(), seed=seed, tries=effort, progress=progress))
+    found = np.array(search(whole.problem(choice), seed=seed, tries=effort, progress=progress))
     sequence = choice.owner[found].tolist()
     for _ in range(_FINER if choice.free.any() else 0):
         choice = choice.finer(found)
-        found = np.array(best_places(problem(), sequence))
-    return _ordered(choice, problem(), found)
+        found = np.array(best_places(whole.problem(choice), sequence))
+    return _ordered(choice, whole.problem(choice), found)
+
+
+class _Whole(NamedTuple):
+    """All of a problem but the places; as `Problem` has it."""
+
+    start: tuple[float, float]
+    rule: Precedence
+    stage: IntArray
+    part: IntArray
+    cost: Cost
+    heat: Heat | None
+
+    @classmethod
+    def of(
+        cls,
+        cuts: Sequence[Cut],
+        parents: Mapping[int, int | None],
+        start: tuple[float, float],
+        cost: Cost,
+        *,
+        together: bool,
+        heat: Heat | None,
+        after: Mapping[int, Sequence[int]] = MappingProxyType({}),
+    ) -> _Whole:
+        kinds = [_stage(cut, after) for cut in cuts]
+        stages = [sorted(set(kinds)).index(kind) for kind in kinds]
+        parts = [_outermost(cut.contour, parents) if together else 0 for cut in cuts]
+        rule = Precedence.between(cuts, parents, stages, _by_part(after, parents) if together else after)
+        return cls(start, rule, np.array([*stages, max(stages)]), np.array([*parts, -1]), cost, heat)
+
+    def problem(self, choice: Choice) -> Problem:
+        begins, ends = np.vstack([choice.begins, self.start]), np.vstack([choice.ends, self.start])
+        first = np.append(choice.first, len(begins))
+        return Problem(begins, ends, first, self.rule, self.stage, self.part, self.cost, self.heat)
+
+
+def problem_of(
+    cuts: Sequence[Cut],
+    *,
+    parents: Mapping[int, int | None],
+    start: tuple[float, float],
+    cost: Cost = distance,
+    places: Sequence[Sequence[Spot] | None] | None = None,
+    together: bool = False,
+    heat: Heat | None = None,
+) -> Problem:
+    """The problem that `order` searches first, for other solvers; at least one cut."""
+    whole = _Whole.of(cuts, parents, start, cost, together=together, heat=heat)
+    return whole.problem(Choice.of(cuts, places))
 
 
 def _stage(cut: Cut, after: Mapping[int, Sequence[int]]) -> int:

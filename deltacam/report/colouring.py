@@ -1,4 +1,4 @@
-"""The ways in which the path of the tool is coloured: by speed, by deviation, by energy, by the nearest limit."""
+"""The ways of colouring the path of the tool: by speed, by deviation, by energy, by the nearest limit, by kind."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from typing import Final
 
 import numpy as np
 
-from deltacam.model import Array, IntArray
+from deltacam.model import Array, BlockKind, IntArray
 from deltacam.report import palette
+from deltacam.report.bands import BURNT, bands
 from deltacam.report.binding import LIMITS, NEAR, Binding, limit_of
 from deltacam.report.palette import Ink
 from deltacam.report.picture import colours_of, speed_colours
 from deltacam.report.stretches import Choice, largest, most_unusual
 from deltacam.units import to_mm, to_um
+from deltacam.verification.evidence import KINDS, Evidence
 
 _LEVELS: Final = 8  # of deviation, up to the limit
 _ENERGIES: Final = (0.5, 0.8, 0.95, 1.05, 1.25, 1.6, 2.0, 3.0, 5.0)  # times the usual one, between the levels
@@ -86,6 +88,15 @@ def by_energy(energy: Array, usual_j_mm: float) -> Colouring:
         return np.where(some(first) == 1, found(first), 0)
 
     return Colouring("Energy", f"energy per mm up to, {unit}", inks, labels, choose)
+
+
+def by_kind(evidence: Evidence) -> Colouring:
+    """What is done at every step with the laser on."""
+    kinds = {BlockKind.LEAD_IN: 1, BlockKind.LOOP: 2, BlockKind.OVERCUT: 3, BlockKind.ENGRAVE: 4}
+    colour = np.array([kinds.get(kind, 0) for kind in KINDS])[evidence.kind[:-1]]
+    there = set(colour[np.isin(bands(evidence), BURNT)].tolist())
+    labels = [name if index in there else "" for index, name in enumerate(palette.KINDS)]
+    return Colouring("Kind", "with the laser on", list(palette.KINDS.values()), labels, largest(colour), ramp=False)
 
 
 def by_limit(nearest: Binding) -> Colouring:

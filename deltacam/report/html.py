@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from deltacam.model import Check, Drawing, Report
 from deltacam.program.program import Program
 from deltacam.report import held_back, kerf, palette, sections
+from deltacam.report.escaping import shown
 from deltacam.report.page import frame
 from deltacam.report.payload import payload, to_script
-from deltacam.report.picture import View, draw, shown
+from deltacam.report.picture import draw
 from deltacam.report.slots import slots
 from deltacam.report.tables import table
+from deltacam.report.view import View
 from deltacam.robot.robot import Robot
 from deltacam.verification.evidence import Evidence, gather
 

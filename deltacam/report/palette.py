@@ -52,8 +52,36 @@ BINDING: Final = (
 _MIDDLE: Final = Ink("#9aa88f", "#5d6b56")
 OVER: Final = Ink("#e5202e", "#ff4d4d")
 """Of what is beyond its limit."""
+PAPER: Final = Ink("#ffffff", "#151b23")
+"""Around marks that lie on lines."""
+TAB: Final = JOINTS[1]
+KINDS: Final = {
+    "cut": Ink("#0969da", "#4493f8"),
+    "lead-in": Ink("#1a7f37", "#3fb950"),
+    "loop": Ink("#bf3989", "#f778ba"),
+    "overcut": Ink("#8250df", "#ab7df8"),
+    "engraved": Ink("#9a6700", "#d4a72c"),
+}
+"""Of what is done with the laser on."""
 
-_FIXED: Final = (TEXT, STRONG, GRID, ZERO, LINE, RAPID, PART, SHEET, LIMIT, TOOL, ANGLE, *JOINTS, *BINDING, OVER)
+_FIXED: Final = (
+    TEXT,
+    STRONG,
+    GRID,
+    ZERO,
+    LINE,
+    RAPID,
+    PART,
+    SHEET,
+    LIMIT,
+    TOOL,
+    ANGLE,
+    *JOINTS,
+    *BINDING,
+    OVER,
+    PAPER,
+    TAB,
+)
 
 
 def css(ink: Ink) -> str:

@@ -8,13 +8,27 @@ from typing import Final
 import numpy as np
 
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Drawing, Operation
+from deltacam.model import Array, Drawing
 from deltacam.report import palette
+from deltacam.report.bands import (
+    BESIDE,
+    BURNT,
+    DARK,
+    ENGRAVED,
+    RAPID,
+    STROKES,
+    SUBJECT,
+    TWICE,
+    Stroke,
+    bands,
+    names,
+)
 from deltacam.report.colouring import Colouring
 from deltacam.report.figures import Json, dots, lines, map_layout, packed
-from deltacam.report.picture import RAPID, View, bands
+from deltacam.report.marks import MANY, Marks, headings, marks_of
 from deltacam.report.stretches import stretches
 from deltacam.report.thin import thin_lines, thin_way
+from deltacam.report.view import View
 from deltacam.units import to_mm
 from deltacam.verification.evidence import Evidence
 
@@ -22,53 +36,96 @@ EXACT: Final = 1e-6
 """How far the path of a program that is shown tick by tick may be drawn from its setpoints, m."""
 
 _MOST_STRETCHES: Final = 12_000
-_MOST_NUMBERS: Final = 60  # cuts that are numbered
-_NUMBER: Final = np.array([0.045, 0.032])  # width and height of a number, of what the starts span
-_SIDES: Final = {"top right": (1, 1), "bottom right": (1, -1), "top left": (-1, 1), "bottom left": (-1, -1)}
 
 
 def part_figure(evidence: Evidence, drawing: Drawing | None, view: View) -> Json:
-    """The contours, the sheet's edge where it is near, where cuts begin and in which order.
+    """The contours, the sheet's edge where it is near, where cuts begin, in which order, which way they run, and tabs.
 
     Returns:
-        ``below`` and ``above``: the traces under and over the path; ``rapid`` and ``dots``: colours; ``layout``.
+        ``below`` and ``above``: the traces under and over the path; ``marks``: traces of which a mark is shown where a
+        pixel is at most so many mm as ``scale`` says; ``strokes``: how every band of the path is drawn; ``legend``:
+        what lines and marks there are; ``dots``: a colour; ``layout``.
     """
     below = []
     if len(view.sheet):
         below.append(lines([_closed(to_mm(1.0) * view.sheet)], palette.SHEET, width=1.0))
     below += _drawn(drawing, view)
-    above: list[Json] = []
-    cuts = [run.first for run in evidence.runs if run.operation is Operation.CUT]
-    if len(evidence.sheet) and cuts:
-        starts = to_mm(1.0) * evidence.sheet[cuts]
-        few = len(cuts) < _MOST_NUMBERS
-        above.append(dots(starts, palette.STRONG, size=5.5 if few else 4.0) | (_numbers(starts) if few else {}))
+    marks = marks_of(evidence, view.box)
     return {
         "below": below,
-        "above": above,
-        "rapid": palette.RAPID.light,
+        "above": _above(evidence, marks),
+        "marks": _marks(marks),
+        "strokes": [_stroke(STROKES[band]) for band in sorted(STROKES)],
+        "legend": _legend(evidence, marks),
         "dots": palette.STRONG.light,
         "layout": map_layout(to_mm(1.0) * view.box),
     }
 
 
-def _numbers(starts: Array) -> Json:
-    """The place of every cut in the order, beside its start where no other number is in the way; else it has none.
+def _above(evidence: Evidence, marks: Marks) -> list[Json]:
+    """The ends of tabs as bars across the path, and the places at which the laser pierces as dots."""
+    sheet, found, small = to_mm(1.0) * evidence.sheet, [], len(marks.starts) >= MANY
+    if len(marks.tabs):
+        bars = dots(sheet[marks.tabs], palette.TAB, size=9.0 if small else 12.0, symbol="line-ns")
+        bars["marker"] |= {"angle": _degrees(-headings(evidence.sheet, marks.tabs))}
+        found.append(bars | {"marker": bars["marker"] | {"line": {"color": palette.TAB.light, "width": 2.2}}})
+    edge = {"line": {"color": palette.PAPER.light, "width": 1.0}}
+    for ticks, size in ((marks.pierces, 3.5 if small else 5.0), (marks.starts, 5.5 if small else 7.0)):
+        if len(ticks):
+            trace = dots(sheet[ticks], palette.STRONG, size=size)
+            found.append(trace | {"marker": trace["marker"] | edge})
+    return found
 
-    The distance that two numbers need is a share of what the starts span, for a picture that shows the whole part.
-    """
-    room = _NUMBER * max(float(np.ptp(starts, axis=0).max()), 1e-9)
-    taken, text, sides = np.empty((0, 2)), [], []
-    for number, start in enumerate(starts, start=1):
-        middles = start + np.array([_SIDES[side] for side in _SIDES]) * room / 2.0
-        gaps = np.abs(middles[:, None] - taken[None]) / room
-        free = ~(gaps < 1.0).all(axis=2).any(axis=1)
-        side = int(np.argmax(free))
-        text.append(str(number) if free[side] else "")
-        sides.append(list(_SIDES)[side])
-        taken = np.concatenate([taken, middles[side : side + 1]]) if free[side] else taken
-    font = {"size": 12, "color": palette.STRONG.light, "weight": 600}
-    return {"mode": "markers+text", "text": text, "textposition": sides, "textfont": font}
+
+def _marks(marks: Marks) -> list[Json]:
+    """The heads of arrows, and the numbers."""
+    found, arrows, numbers = [], marks.arrows, marks.numbers
+    if len(arrows.points):
+        heads = dots(to_mm(1.0) * arrows.points, palette.STRONG, size=13.0, symbol="arrow")
+        # The head of an arrow points up, and its angle is clockwise.
+        edge = {"angle": _degrees(0.5 * np.pi - arrows.heading), "line": {"color": palette.PAPER.light, "width": 0.8}}
+        found.append({"trace": heads | {"marker": heads["marker"] | edge}, "scale": packed(to_mm(1.0) * arrows.scale)})
+    if len(numbers.points):
+        font = {"size": 12, "color": palette.STRONG.light, "weight": 600}
+        text = {
+            "mode": "markers+text",
+            "text": list(numbers.text),
+            "textposition": list(numbers.side),
+            "textfont": font,
+        }
+        trace = dots(to_mm(1.0) * numbers.points, palette.STRONG, size=7.0) | text
+        trace["marker"] |= {"opacity": 0.0}  # the dots are there already; these keep their distance
+        found.append({"trace": trace, "scale": packed(to_mm(1.0) * numbers.scale)})
+    return found
+
+
+def _degrees(angles: Array) -> list[int]:
+    return [round(angle) for angle in np.degrees(angles).tolist()]
+
+
+def _stroke(stroke: Stroke) -> Json:
+    dash = ",".join(f"{length:g}px" for length in stroke.dash if length)
+    line: Json = {"width": stroke.width, "dash": dash or "solid"}
+    return line if stroke.ink is None else line | {"color": stroke.ink.light}
+
+
+def _legend(evidence: Evidence, marks: Marks) -> list[list[str]]:
+    """The looks and the names of the lines and marks that there are."""
+    found = [[_LOOKS[band], name] for band, name in names(evidence, bands(evidence)).items()]
+    found += [["tab", "tab"]] if len(marks.tabs) else []
+    found += [["dot", "pierce, in order"]] if len(marks.starts) else []
+    found += [["arrow", "direction"]] if len(marks.arrows.points) else []
+    return found
+
+
+_LOOKS: Final = {
+    SUBJECT: "line",
+    BESIDE: "thin line",
+    TWICE: "thick line",
+    DARK: "dotted line",
+    ENGRAVED: "fine line",
+    RAPID: "dashed line",
+}
 
 
 def route(evidence: Evidence, colourings: Sequence[Colouring], view: View, *, exact: bool) -> Json:
@@ -98,7 +155,7 @@ def route(evidence: Evidence, colourings: Sequence[Colouring], view: View, *, ex
         "y": packed(points[:, 1]),
         "first": packed(np.searchsorted(kept, first), "u4"),
         "band": packed(band[first], "u1"),
-        "colours": [packed(np.where(band[first] == RAPID, 0, colour), "u1") for colour in colours],
+        "colours": [packed(np.where(np.isin(band[first], BURNT), colour, 0), "u1") for colour in colours],
         "within": to_mm(within),
     }
 

@@ -10,15 +10,16 @@ import numpy as np
 
 from deltacam.model import Array, BlockKind, Drawing, Mode
 from deltacam.plain import plain
+from deltacam.report.bands import BESIDE, BURNT, DARK, TWICE, bands
 from deltacam.report.binding import LIMITS, Binding, binding, limit_of
-from deltacam.report.colouring import Colouring, by_deviation, by_energy, by_limit, by_speed
+from deltacam.report.colouring import Colouring, by_deviation, by_energy, by_kind, by_limit, by_speed
 from deltacam.report.figures import Json, packed
 from deltacam.report.motion import Motion, deviations, motion_of
 from deltacam.report.motion_figure import deviation_figure, motion_figure
 from deltacam.report.palette import BINDING, Ink
 from deltacam.report.part_figure import part_figure, route
-from deltacam.report.picture import RAPID, View, bands
 from deltacam.report.samples import Sampling
+from deltacam.report.view import View
 from deltacam.report.workspace_figure import workspace_figure
 from deltacam.units import to_mm, to_um
 from deltacam.verification.energy import line_energy, to_j_mm
@@ -51,12 +52,15 @@ def payload(evidence: Evidence, drawing: Drawing | None, view: View) -> tuple[Js
     }
     colourings: list[Colouring] = []
     if len(evidence.sheet) > 1:
-        subject = bands(evidence) != RAPID
+        band = bands(evidence)
+        subject = np.isin(band, BURNT)
         colourings = [by_speed(motion.speed[:-1], subject), by_limit(nearest)]
         if energy is not None:
             colourings.insert(1, by_energy(energy[:-1], to_j_mm(evidence.program.process)))
         if deviation is not None:
             colourings.insert(1, by_deviation(deviation[:-1], tolerance, limit))
+        if np.isin(band, (BESIDE, TWICE, DARK)).any():
+            colourings.append(by_kind(evidence))
         data["place"] = [packed(sampling.at_first(to_mm(1.0) * column)) for column in evidence.sheet.T]
         data["route"] = route(evidence, colourings, view, exact=sampling.step == 1)
     if deviation is not None:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
 
-from deltacam.model import Check, Drawing, LedgerEntry, Mode, Operation, Report, Size
+from deltacam.model import BlockKind, Check, Drawing, LedgerEntry, Mode, Operation, Report, Size
 from deltacam.program.program import Program
-from deltacam.report.picture import shown, tool_speeds
+from deltacam.report.escaping import shown
+from deltacam.report.picture import tool_speeds
 from deltacam.report.tables import table
 from deltacam.units import to_mm, to_um
 from deltacam.verification.checks.measure import DIFFERENCES
@@ -20,6 +21,8 @@ _DONE: Final = {Operation.CUT: "cut", Operation.ENGRAVE: "engraved"}
 _PASSED: Final = '<span class="ok">\u2713 passed</span>'
 _WARNED: Final = '<span class="warned">! warning</span>'
 _FAILED: Final = '<span class="bad">\u2717 failed</span>'
+_LENGTHS: Final = {"lead-in, mm": BlockKind.LEAD_IN, "overcut, mm": BlockKind.OVERCUT}
+_COUNTS: Final = {"loops": BlockKind.LOOP, "tabs": BlockKind.TAB}
 _HANDLES: Final = 3  # of a contour that are named
 
 
@@ -116,7 +119,26 @@ def contours(evidence: Evidence, drawing: Drawing | None) -> str:
             cells += ["unknown" if len(ticks) else "", "", "", ""]
         rows.append(cells)
     heads = ("contour", "layer", "handles", "done", "length, mm", "time, s", "mean, mm/s", "largest, mm/s")
-    return table(heads, rows, numbers=(4, 5, 6, 7)) if rows else ""
+    more = _beside(evidence, [int(row[0]) if row[0] != "?" else 0 for row in rows])
+    rows = [[*row, *(column[at] for column in more.values())] for at, row in enumerate(rows)]
+    return table((*heads, *more), rows, numbers=range(4, len(heads) + len(more))) if rows else ""
+
+
+def _beside(evidence: Evidence, contours: Sequence[int]) -> dict[str, list[str]]:
+    """What the ``contours`` have besides their cut: a column for each thing that there is."""
+    speed, found = tool_speeds(evidence), {}
+    for head, kind in _LENGTHS.items():
+        mm: defaultdict[int, float] = defaultdict(float)
+        for run in evidence.runs if len(speed) else ():
+            for first, end in evidence.stretches(run, frozenset({kind})):
+                mm[run.contour or 0] += float(speed[first:end].sum()) / evidence.rate
+        found[head] = [f"{mm[contour]:.2f}" if contour in mm else "" for contour in contours]
+    for head, kind in _COUNTS.items():
+        counts: Counter[int] = Counter()
+        for run in evidence.runs:
+            counts[run.contour or 0] += len(evidence.stretches(run, frozenset({kind})))
+        found[head] = [str(counts[contour] or "") for contour in contours]
+    return {head: cells for head, cells in found.items() if any(cells)}
 
 
 def sizes(found: Sequence[Size]) -> str:

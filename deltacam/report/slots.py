@@ -18,7 +18,7 @@ def slots(data: Json) -> str:
 <div class="group" id="colours" role="group" aria-label="Colour of the path"></div></div>
 <div class="plot inked" id="part" role="img" aria-label="The part and the path of the tool over it"></div>
 <div class="legend inked" id="legend"></div>
-<div class="clock"><button type="button" id="play">Play</button>
+{_lines(data)}<div class="clock"><button type="button" id="play">Play</button>
 <input type="range" id="time" min="0" value="0" aria-label="Time in the program"></div>
 <figcaption>Scroll to zoom, drag to move, double-click for all. {_path(data)}</figcaption></figure>
 <figure class="moving"><div class="bar"><h3>The machine from above</h3></div>
@@ -38,9 +38,13 @@ def _path(data: Json) -> str:
     """How exactly the path is drawn."""
     if "route" not in data:
         return "The tool has no place at some tick, so that there is no path."
-    order = ", in their order" if any("text" in trace for trace in data["part"]["above"]) else ""
-    within = f"The path is drawn within {to_um(data['route']['within'] / 1e3):.3g} µm of the setpoints."
-    return f"{within} Dashed: rapids; dots: where cuts begin{order}."
+    return f"The path is drawn within {to_um(data['route']['within'] / 1e3):.3g} µm of the setpoints."
+
+
+def _lines(data: Json) -> str:
+    """What the lines and marks of the path stand for."""
+    items = "".join(f'<li><i class="{look}"></i>{name}</li>' for look, name in data["part"]["legend"])
+    return f'<div class="legend looks"><ul>{items}</ul></div>\n' if items else ""
 
 
 def _samples(data: Json) -> str:

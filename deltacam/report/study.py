@@ -9,9 +9,9 @@ from typing import Final
 
 from deltacam.plain import plain
 from deltacam.report import palette
+from deltacam.report.escaping import shown
 from deltacam.report.figures import Json
 from deltacam.report.page import frame
-from deltacam.report.picture import shown
 from deltacam.report.tables import table
 
 _LONGEST: Final = 400  # characters of a cell or a name on a terminal; a file may hold a name of any length

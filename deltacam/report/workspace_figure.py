@@ -11,8 +11,8 @@ from deltacam.geometry import curve as curves
 from deltacam.model import Array, Drawing
 from deltacam.report import palette
 from deltacam.report.figures import Json, dots, lines, map_layout
-from deltacam.report.picture import View, sheet_edge
 from deltacam.report.thin import thin_lines
+from deltacam.report.view import View, sheet_edge
 from deltacam.robot.robot import Robot
 from deltacam.units import to_mm
 from deltacam.verification.evidence import Evidence

@@ -10,7 +10,18 @@ import shapely
 
 from deltacam import pipeline
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, BlockKind, Check, Contour, Drawing, IntArray, Process, Report
+from deltacam.model import (
+    Array,
+    BlockKind,
+    Check,
+    Contour,
+    Drawing,
+    IntArray,
+    Lead,
+    Process,
+    Report,
+    Tabs,
+)
 from deltacam.program.program import Program
 from deltacam.robot.reader import load_robot
 from deltacam.robot.robot import Controller, Robot
@@ -19,6 +30,7 @@ from tests.damage import drawings
 JERKS = (None, 6388.0, 4000.0)  # rad/s3
 SAGITTA = 0.2e-6  # of the flattened contours, m
 WORKING = (BlockKind.CUT, BlockKind.ENGRAVE)
+WITH_STRETCHES = 1000  # from this seed on programs may have leads
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,14 +155,34 @@ def random_process(chance: np.random.Generator) -> Process:
     )
 
 
+def has_stretches(seed: int) -> bool:
+    """Whether the program of a seed has leads."""
+    return seed >= WITH_STRETCHES and seed % 2 == 0
+
+
+def with_stretches(process: Process, chance: np.random.Generator) -> Process:
+    """The process with leads and an overcut, and with loops, tabs, both or neither."""
+    return replace(
+        process,
+        lead_in=Lead(str(chance.choice(["line", "arc", "line+arc"]))),
+        lead_out=Lead(str(chance.choice(["none", "line", "arc", "line+arc"]))),
+        start=str(chance.choice(["best", "edge", "corner"])),
+        overcut=float(chance.choice([0.0, 0.5e-3, 1.5e-3])),
+        corner="loop" if chance.random() < 0.5 else process.corner,
+        tabs=Tabs(width=float(chance.choice([0.3e-3, 0.6e-3])), count=2) if chance.random() < 0.5 else None,
+    )
+
+
 def example(seed: int) -> Example:
-    """The valid program of a seed.
+    """The valid program of a seed; of some seeds it has leads, an overcut, loops and tabs.
 
     Raises:
         DeltacamError: the pipeline did not plan it.
     """
     chance = np.random.default_rng(seed)
     robot, process, content = random_robot(chance), random_process(chance), drawings.drawing(chance)
+    if has_stretches(seed):
+        process = with_stretches(process, np.random.default_rng([seed, 1]))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "part.dxf"
         path.write_bytes(content)

@@ -10,7 +10,7 @@ from deltacam.program.program import Program
 from tests.damage.aim import NoPlaceError
 from tests.damage.example import Example
 from tests.damage.rows import gathered
-from tests.damage.stretches import jobs, together
+from tests.damage.stretches import jobs, plain_jobs, together
 
 THIRD = 2.0 * np.pi / 3.0
 
@@ -22,7 +22,7 @@ def taken_apart(case: Example) -> Program:
 
 def another_order(case: Example) -> Program:
     """Two holes of the same part in the other order, where they follow each other."""
-    todo = jobs(case.program)
+    todo = plain_jobs(case.program)
     around = {contour.number: contour.parent for contour in case.drawing.contours}
     places = [(job[-1].block.kind, around[job[-1].block.contour or 0]) for job in todo]
     for index in range(len(todo) - 1):
@@ -36,7 +36,9 @@ def another_order(case: Example) -> Program:
 def backwards(case: Example) -> Program:
     """Every closed cut run the other way."""
     closed = {contour.number for contour in case.drawing.contours if contour.curve.closed}
-    todo = [(*job[:-1], job[-1].backwards()) if job[-1].block.contour in closed else job for job in jobs(case.program)]
+    todo = [
+        (*job[:-1], job[-1].backwards()) if job[-1].block.contour in closed else job for job in plain_jobs(case.program)
+    ]
     return together(case.program, todo)
 
 

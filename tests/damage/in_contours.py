@@ -11,7 +11,7 @@ from deltacam.model import Array, Block, BlockKind, Contour
 from deltacam.program.program import Program
 from tests.damage.aim import NoPlaceError, aim
 from tests.damage.example import SAGITTA, Example, beam_path
-from tests.damage.stretches import Job, Stretch, along, jobs, together
+from tests.damage.stretches import Job, Stretch, along, jobs, plain_jobs, together
 
 Make = Callable[[Example, float, np.random.Generator], Program]
 
@@ -36,7 +36,7 @@ def doubled(case: Example, amount: float, _: np.random.Generator) -> Program:
 
 def outline_too_early(case: Example, amount: float, chance: np.random.Generator) -> Program:
     """An outline just before something that lies in it (1), or everything in the reverse order."""
-    todo = jobs(case.program)
+    todo = plain_jobs(case.program)
     parents = {contour.number: contour.parent for contour in case.drawing.contours}
     numbers = [job[-1].block.contour for job in todo]
     cut = [job[-1].block.kind is BlockKind.CUT for job in todo]
@@ -56,7 +56,7 @@ def outline_too_early(case: Example, amount: float, chance: np.random.Generator)
 
 def engraved_late(case: Example, amount: float, _: np.random.Generator) -> Program:
     """Engraving after the first cut (1), or after all of them."""
-    todo = jobs(case.program)
+    todo = plain_jobs(case.program)
     engraved = [job for job in todo if job[-1].block.kind is BlockKind.ENGRAVE]
     cuts = [job for job in todo if job[-1].block.kind is BlockKind.CUT]
     if not engraved or not cuts:
@@ -143,7 +143,9 @@ def pierced_in_part(case: Example, amount: float, chance: np.random.Generator) -
 
 
 def lead_through_part(kind: BlockKind, *, of_line: bool = False) -> Make:
-    """A lead before or after a cut that comes so many tolerances nearer to the part than the beam belongs, and back.
+    """A lead before or after a cut that comes nearer to the part than the beam belongs, and back.
+
+    It does so by so many times the sum of both tolerances.
 
     It is said to be of the contour that is cut, or of a line that has no kerf beside it.
     """
@@ -153,7 +155,8 @@ def lead_through_part(kind: BlockKind, *, of_line: bool = False) -> Make:
         numbers = [one.number for one in case.drawing.contours if not one.has_kerf] if of_line else [cut.block.contour]
         if not numbers:
             raise NoPlaceError
-        way = _into_part(case, cut, amount)
+        process = case.program.process
+        way = _into_part(case, cut, amount * (1.0 + process.chord_tolerance / process.tolerance))
         block = replace(cut.block, kind=kind, contour=numbers[0])
         lead = replace(cut, block=block, q=np.concatenate([way, way[-2::-1]]))
         job = todo[index]
@@ -165,7 +168,7 @@ def lead_through_part(kind: BlockKind, *, of_line: bool = False) -> Make:
 
 def _some_cut(case: Example, chance: np.random.Generator) -> tuple[list[Job], int, Stretch]:
     """What a program does, and one cut around a contour that ends where it starts: its job, and itself."""
-    todo = jobs(case.program)
+    todo = plain_jobs(case.program)
     closed = {contour.number for contour in case.drawing.contours if contour.has_kerf}
     cuts = [index for index, job in enumerate(todo) if job[-1].block.contour in closed]
     if not cuts:

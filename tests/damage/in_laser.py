@@ -43,7 +43,8 @@ def beside_the_law(case: Example, amount: float, chance: np.random.Generator) ->
     way = np.linalg.norm(case.middles - case.tool[:-1], axis=1) + np.linalg.norm(case.tool[1:] - case.middles, axis=1)
     speed = np.append(way * case.rate, 0.0)
     power = case.program.power.copy()
-    feeds = {BlockKind.CUT: process.feed, BlockKind.ENGRAVE: process.engrave_feed or 1.0}
+    cutting = (BlockKind.LEAD_IN, BlockKind.CUT, BlockKind.LOOP, BlockKind.OVERCUT)
+    feeds = {**dict.fromkeys(cutting, process.feed), BlockKind.ENGRAVE: process.engrave_feed or 1.0}
     for kind, feed in feeds.items():
         rows = case.rows(kind)
         power[rows] *= 0.5 + 0.5 * np.minimum(speed[rows] / feed, 1.0)

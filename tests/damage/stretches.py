@@ -8,6 +8,10 @@ import numpy as np
 from deltacam.model import Array, Block, BlockKind
 from deltacam.program.program import Program
 from tests.bench import smooth
+from tests.damage.aim import NoPlaceError
+
+STRETCHES = frozenset({BlockKind.LEAD_IN, BlockKind.LEAD_OUT, BlockKind.LOOP, BlockKind.TAB, BlockKind.OVERCUT})
+"""What only some programs have."""
 
 EASY = 0.7  # of every limit, for rapids
 
@@ -45,6 +49,17 @@ def jobs(program: Program) -> list[Job]:
             rows = slice(block.first, block.last + 2)
             found[-1].append(Stretch(block, program.q[rows], float(program.power[block.first])))
     return [tuple(job) for job in found if job]
+
+
+def plain_jobs(program: Program) -> list[Job]:
+    """The same of a program in which every job is a pierce at most, and then a cut or what is engraved.
+
+    Raises:
+        NoPlaceError: it has leads, loops or tabs.
+    """
+    if any(block.kind in STRETCHES for block in program.blocks):
+        raise NoPlaceError
+    return jobs(program)
 
 
 def together(program: Program, todo: Sequence[Job]) -> Program:

@@ -4,7 +4,7 @@ A new check needs a line here.
 """
 
 from deltacam.model import BlockKind, Mode
-from tests.damage import in_contours, in_drawing, in_file, in_laser, in_motion, in_place, in_robot
+from tests.damage import in_contours, in_drawing, in_file, in_laser, in_motion, in_place, in_robot, in_stretches
 from tests.damage.in_motion import DOUBLED, LOST, SWAPPED, of_curve, of_joints, of_tool
 from tests.damage.kind import READING, Kind
 
@@ -13,6 +13,7 @@ LIMIT = "the limit and 0.1 %"
 PATH = "the tolerance"
 EDGE = "the sum of both tolerances"
 MICROMETRE = "1 um"
+IN_PLACE = "leads, loops and tabs in their place"
 REST = "20 ms or 3 ticks"
 
 OF_FILES: dict[str, Kind] = {
@@ -219,15 +220,15 @@ OF_CONTOURS: dict[str, Kind] = {
     "a stretch cut again": Kind(in_contours.cut_again, ("material cut twice",), "1 mm", 1.2, 10.0),
     "pierced in the part": Kind(in_contours.pierced_in_part, ("pierce outside the part",), PATH, 1.1, 30.0, 0.9),
     "a lead-in through the part": Kind(
-        in_contours.lead_through_part(BlockKind.LEAD_IN), ("leads outside the part",), PATH, 1.1, 30.0, 0.9
+        in_contours.lead_through_part(BlockKind.LEAD_IN), ("leads outside the part",), EDGE, 1.1, 30.0, 0.9
     ),
     "a lead-out through the part": Kind(
-        in_contours.lead_through_part(BlockKind.LEAD_OUT), ("leads outside the part",), PATH, 1.1, 30.0, 0.9
+        in_contours.lead_through_part(BlockKind.LEAD_OUT), ("leads outside the part",), EDGE, 1.1, 30.0, 0.9
     ),
     "a lead of a line through the part": Kind(
         in_contours.lead_through_part(BlockKind.LEAD_OUT, of_line=True),
         ("leads outside the part",),
-        PATH,
+        EDGE,
         1.1,
         30.0,
         0.9,
@@ -235,4 +236,26 @@ OF_CONTOURS: dict[str, Kind] = {
 }
 """What is cut is not what is drawn, or not in an order that keeps parts in place."""
 
-KINDS: dict[str, Kind] = OF_FILES | OF_MOTION | OF_LASER | OF_PLACES | OF_ROBOTS | OF_DRAWINGS | OF_CONTOURS
+OF_STRETCHES: dict[str, Kind] = {
+    "lead-ins said to be loops": Kind(in_stretches.lead_said_to_be_loop, (IN_PLACE,), "no lead-in", 1, 100),
+    "lead-outs said to be tabs": Kind(in_stretches.lead_out_said_to_be_tab, (IN_PLACE,), "no lead-out", 1, 100),
+    "a longer overcut in the meta": Kind(
+        in_stretches.longer_overcut_in_meta, ("overcut",), "a tick and both tolerances", 1.05, 5.0, 0.9
+    ),
+    "a shorter overcut in the meta": Kind(
+        in_stretches.shorter_overcut_in_meta, ("overcut",), "two ticks and both tolerances", 1.05, 2.0, 0.9
+    ),
+    "wider tabs in the meta": Kind(in_stretches.wider_tabs_in_meta, ("tab width",), EDGE, 1.05, 10.0, 0.9),
+    "a longer time between cuts in the meta": Kind(
+        in_stretches.heat_in_meta, ("time for heat to spread",), "half a tick", 1.05, 100.0, 0.9
+    ),
+    "begun with another contour": Kind(
+        in_stretches.begun_elsewhere_in_meta, ("begins at its contour",), "no contour", 1, 2
+    ),
+    "tabs that nobody asked for": Kind(in_stretches.tabs_nobody_asked_for, ("tab width",), "no tab", 1, 100),
+}
+"""What is beside the cut itself is not what the process says, or not where it belongs."""
+
+KINDS: dict[str, Kind] = (
+    OF_FILES | OF_MOTION | OF_LASER | OF_PLACES | OF_ROBOTS | OF_DRAWINGS | OF_CONTOURS | OF_STRETCHES
+)

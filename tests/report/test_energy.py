@@ -11,8 +11,8 @@ from deltacam.report.colouring import by_energy
 from deltacam.report.motion import motion_of
 from deltacam.report.motion_figure import motion_figure
 from deltacam.report.payload import payload
-from deltacam.report.picture import View
 from deltacam.report.text import to_text
+from deltacam.report.view import View
 from deltacam.verification.energy import line_energy
 from deltacam.verification.evidence import gather
 from deltacam.verification.verify import verify

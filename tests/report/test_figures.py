@@ -13,12 +13,13 @@ from shapely import MultiLineString, Polygon, distance, points
 
 from deltacam.model import Drawing, Mode
 from deltacam.program.program import Program
+from deltacam.report.bands import RAPID, bands
 from deltacam.report.motion import motion_of
 from deltacam.report.motion_figure import deviation_figure, motion_figure
 from deltacam.report.palette import Ink, css, dark_rules
 from deltacam.report.payload import payload, to_script
-from deltacam.report.picture import RAPID, View, bands
 from deltacam.report.samples import Sampling
+from deltacam.report.view import View
 from deltacam.report.workspace_figure import workspace_figure
 from deltacam.verification.evidence import gather
 from tests.bench import Bench
@@ -165,17 +166,12 @@ def test_numbers_that_would_lie_on_each_other_go_around_their_dot_or_are_left_ou
     program = bench.program()
     again = replace(program, **{name: np.concatenate([getattr(program, name)] * 6) for name in ("q", "power", "block")})
     data, _ = made(again, bench.drawing)
-    (numbers,) = data["part"]["above"]
-    shown = [
-        (x, y, side)
-        for x, y, side, text in zip(
-            unpacked(numbers["x"]), unpacked(numbers["y"]), numbers["textposition"], numbers["text"], strict=True
-        )
-        if text
-    ]
+    (dots,) = data["part"]["above"]
+    assert len(unpacked(dots["x"])) == 24
+    numbers = data["part"]["marks"][-1]["trace"]
+    shown = list(zip(unpacked(numbers["x"]), unpacked(numbers["y"]), numbers["textposition"], strict=True))
     assert numbers["text"][:4] == ["1", "2", "3", "4"]
-    assert len(numbers["text"]) == 24
-    assert 8 <= len(shown) == len(set(shown)) <= 16
+    assert 8 <= len(shown) == len(numbers["text"]) == len(set(shown)) <= 16
 
 
 def test_the_machine_is_seen_whole_with_the_part_where_it_is_placed(bench: Bench) -> None:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 from typing import Protocol
 from xml.etree import ElementTree
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from shapely import LineString, MultiLineString, Point, distance, points
+from shapely import LineString, MultiLineString, Point, Polygon, box, distance, points
 
 from deltacam.geometry import curve as curves
 from deltacam.model import Block, BlockKind, Contour, Curve, Drawing, Mode, Operation
@@ -252,12 +253,23 @@ def test_rows_of_blocks_that_do_not_exist_are_drawn_as_rapids(bench: Bench) -> N
     assert len(of_class(picture, "rapid")) == 1
 
 
-def test_the_numbers_give_way_where_there_are_many_cuts(bench: Bench) -> None:
-    program = straight(bench, np.linspace(-0.04, 0.04, 140))
-    blocks = tuple(Block(BlockKind.CUT, 2 * i, 2 * i + 1, i + 1, "CUT", ("1",)) for i in range(70))
-    picture = parsed(replace(program, blocks=blocks, block=np.repeat(np.arange(70), 2)))
-    assert len(of_class(picture, "start")) == 70
-    assert not of_class(picture, "number")
+def test_numbers_are_left_out_where_they_would_lie_on_others(bench: Bench) -> None:
+    program = straight(bench, np.linspace(-0.04, 0.04, 280))
+    blocks = tuple(Block(BlockKind.CUT, 2 * i, 2 * i + 1, i + 1, "CUT", ("1",)) for i in range(140))
+    picture = parsed(replace(program, blocks=blocks, block=np.repeat(np.arange(140), 2)))
+    assert len(of_class(picture, "start")) == 140
+    numbers = of_class(picture, "number")
+    assert [text.text for text in numbers[:2]] == ["1", "2"]
+    assert 40 < len(numbers) < 140
+    boxes = [_box(text) for text in numbers]
+    assert not any(one.intersects(other) for one, other in combinations(boxes, 2))
+
+
+def _box(text: ElementTree.Element) -> Polygon:
+    """About where a number is, in pixels: digits are 12 high and at least 6.5 wide."""
+    x, y, width = float(text.get("x")), float(text.get("y")), 6.5 * len(text.text)
+    left = x - width if text.get("text-anchor") == "end" else x
+    return box(left, y - 9.0, left + width, y)
 
 
 def test_names_from_files_cannot_leave_their_place(bench: Bench) -> None:

@@ -10,7 +10,7 @@ from urllib.parse import quote
 from deltacam.batch.parts import Batch, Row, Status
 from deltacam.batch.results.thumbnail import to_svg
 from deltacam.batch.results.totals import clock, counted
-from deltacam.report.picture import shown
+from deltacam.report.escaping import shown
 from deltacam.units import to_mm
 
 _SIGNS: Final = {Status.PASSED: ("ok", "\u2713"), Status.LEFT: ("quiet", "\u2013")}

@@ -14,8 +14,8 @@ from deltacam.batch.parts import Batch, Row, Status
 from deltacam.batch.results.columns import Column, columns, picture, urgency
 from deltacam.batch.results.reasons import Reason, reasons
 from deltacam.batch.results.totals import clock, counted, totals, verdict
+from deltacam.report.escaping import shown
 from deltacam.report.page import frame
-from deltacam.report.picture import shown
 from deltacam.report.tables import table
 
 _LONGEST: Final = 600  # characters of a sentence

@@ -1,7 +1,8 @@
 """The leads of every cut: as long as they should be, and where there is no room for that, shorter or elsewhere.
 
-At every place where a cut may begin, leads are tried in full size, then smaller ones. Those places stay whose leads are
-the longest. Where even that is short in a hole, the tool comes from its middle on half a circle.
+At every place where a cut may begin, leads are tried in full size, then smaller ones. Those places stay at which the
+tool comes fastest, as a part of what the contour allows there. Where that is too slow in a hole, the tool comes from
+its middle on half a circle.
 """
 
 from __future__ import annotations
@@ -9,15 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
 
 from deltacam.cutting.leads import shapes, sizes
+from deltacam.cutting.leads.places import Places, Spots, places
+from deltacam.cutting.leads.places import waste_side as waste_side
 from deltacam.cutting.leads.shapes import Ends
 from deltacam.cutting.leads.sizes import Ability, Size
-from deltacam.cutting.leads.starts import starts_off
 from deltacam.cutting.leads.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import (
@@ -29,24 +31,41 @@ from deltacam.model import (
     Cut,
     Finding,
     IntArray,
+    Lead,
     Operation,
     Process,
     Stretch,
 )
 from deltacam.units import to_mm
 
-FACTORS: Final = (1.0, 0.8, 0.6, 0.45, 0.33, 0.25, 0.18, 0.12)
-"""The sizes that are tried, as parts of what a lead should have."""
+SMALLER: Final = (
+    (1.0, 1.0),
+    (1.0, 0.7),
+    (0.8, 1.0),
+    (1.0, 0.5),
+    (0.6, 1.0),
+    (0.8, 0.6),
+    (0.6, 0.7),
+    (0.45, 1.0),
+    (0.33, 1.0),
+    (0.25, 1.0),
+    (0.18, 1.0),
+    (0.12, 1.0),
+    (0.08, 1.0),
+)
+"""The sizes that are tried, as parts of what a lead should have: of its lengths, and of how far its arc turns."""
 
-CENTRE: Final = (1.0, 0.8, 0.6)
-"""The sizes of half circles from the middle of a hole, likewise."""
+CENTRE: Final = (1.0, 1.3, 1.5, 0.8, 0.6)
+"""The diameters of half circles in a hole, as parts of its radius: the first begins in the middle."""
 
 PLACES: Final = 8
 """Places per cut that are tried where the rule leaves a choice."""
 
-_FEW: Final = 4
-_MANY: Final = 3000  # cuts, from which on fewer places are tried
-_ENOUGH: Final = 0.5  # of the length; a shorter lead-in in a hole is compared with one from the middle
+REACHED: Final = 0.97
+"""Part of the speed, as it is foretold, from which on it counts as reached."""
+
+_ALIKE: Final = 0.01  # shares that differ by less are as good
+_BLENDED: Final = 0.7  # of the tolerance, for the blend between a lead and the contour
 _NAMED: Final = 5
 
 
@@ -59,7 +78,7 @@ class Approach:
         distance: from the start of the segment, m.
         lead_in: ends there; None where the laser pierces on the contour.
         lead_out: begins where the overcut ends; None where the tool stops there.
-        share: how long the lead-in is, as a part of what it should be.
+        share: the part of the speed that the tool reaches on the lead-in.
     """
 
     segment: int
@@ -69,30 +88,38 @@ class Approach:
     share: float
 
 
-class _Rows(NamedTuple):
-    """Places of all cuts, (N,) each: whose they are, where they are, and the ends of both leads."""
-
-    cut: IntArray
-    segment: IntArray
-    distance: Array
-    begin: Ends
-    end: Ends
-
-    def chosen(self, which: IntArray | BoolArray) -> _Rows:
-        return _Rows(
-            self.cut[which],
-            self.segment[which],
-            self.distance[which],
-            self.begin.chosen(which),
-            self.end.chosen(which),
-        )
-
-
 class Tried(NamedTuple):
-    """How large leads can be: the part of what they should have, (N,), 0 for none, and their size."""
+    """Leads that fit: the part of the speed that is reached on them, (N,), 0 where none fits, and their size."""
 
     share: Array
     size: Size
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Asked:
+    """What leads of one kind are for.
+
+    Attributes:
+        ends: where they meet contours, as `shapes.ways` takes it.
+        spots: the same places.
+        able: what the tool can do there.
+        speed: that the tool should have there, (N,) m/s.
+        full: the size that they should have.
+        deviation: that blends may have, m.
+    """
+
+    ends: Ends
+    spots: Spots
+    able: Ability
+    speed: Array
+    full: Size
+    deviation: float
+
+    def shares(self, size: Size, which: IntArray) -> Array:
+        """How much of the speed is reached on leads of some places; that of the full size where it is asked for."""
+        able, spots = Ability(*(column[which] for column in self.able)), self.spots.chosen(which)
+        found = sizes.arrival(size, able, self.deviation, spots.bend, spots.ahead)
+        return np.asarray(np.minimum(found / self.speed[which], 1.0))
 
 
 def has_leads(process: Process) -> bool:
@@ -130,14 +157,12 @@ def approaches(
         closed = [k for k in closed if cuts[k].contour in clear]
     if not closed:
         return found, ()
-    rows = _rows(cuts, closed, contours, process, tick, clear)
+    beyond = [_overcut(process, cuts[index], tick) for index in closed]
+    rows = places(cuts, closed, contours, process=process, beyond=beyond, count=PLACES, clear=clear)
     feed = np.array([cut.feed or process.feed for cut in cuts])[rows.cut]
-    deviation = 0.4 * process.tolerance
-    at_begin, at_end = able(rows.begin.place), able(rows.end.place)
-    inwards = rows.begin.backwards()
-    full = sizes.wanted(process.lead_in, feed, at_begin, deviation)
-    into = _from_the_middle(_tried(inwards, full, waste), full, rows, inwards, cuts, waste)
-    out = _tried(rows.end, sizes.wanted(process.lead_out, feed, at_end, deviation), waste)
+    begin = _asked(process.lead_in, feed, rows.begin, rows.begin.ends.backwards(), able, process)
+    end = _asked(process.lead_out, feed, rows.end, rows.end.ends, able, process)
+    into, out = _from_the_middle(_tried(begin, waste), begin, rows, cuts, waste), _tried(end, waste)
     for rows_of_cut in np.split(np.arange(len(rows.cut)), np.flatnonzero(np.diff(rows.cut)) + 1):
         index = int(rows.cut[rows_of_cut[0]])
         kept = rows_of_cut[_best(into.share[rows_of_cut], out.share[rows_of_cut])]
@@ -161,86 +186,65 @@ def begun(cut: Cut, approach: Approach, *, process: Process, tick: float) -> Cut
 
 
 def _overcut(process: Process, cut: Cut, tick: float) -> float:
-    """How far the way goes beyond the start of a cut, m: the laser goes off at a tick."""
-    if process.overcut == 0.0:
+    """How far the way goes beyond the start of a cut, m: the laser goes off at a tick.
+
+    Also where no overcut is asked for: leads leave the contour on a blend each, and these must not leave a bridge.
+    """
+    if not has_leads(process):
         return 0.0
     return min(process.overcut + (cut.feed or process.feed) * tick, curves.length(cut.curve))
 
 
-def _rows(
-    cuts: Sequence[Cut],
-    closed: Sequence[int],
-    contours: Sequence[Contour],
-    process: Process,
-    tick: float,
-    clear: Mapping[int, Sequence[Curve]],
-) -> _Rows:
-    """All places where the closed cuts may begin, with both ends of their leads."""
-    drawn = {contour.number: contour for contour in contours}
-    count = PLACES if len(closed) < _MANY else _FEW
-    columns: list[tuple[Any, ...]] = []
-    for index in closed:
-        cut = cuts[index]
-        edges = clear.get(cut.contour, ())
-        segment, distance = starts_off(edges, cut.curve, process.start, count=count, kerf=process.kerf)
-        place, heading = curves.evaluate(cut.curve, segment, distance)
-        far, onwards = _beyond(cut.curve, segment, distance, _overcut(process, cut, tick))
-        side = np.full(len(segment), waste_side(cut, drawn[cut.contour], process.kerf))
-        columns.append((np.full(len(segment), index), segment, distance, place, heading, far, onwards, side))
-    of, segment, distance, place, heading, far, onwards, side = (
-        np.concatenate(part) for part in zip(*columns, strict=True)
-    )
-    return _Rows(of, segment, distance, Ends(place, heading, side), Ends(far, onwards, side))
+def _asked(
+    lead: Lead, feed: Array, spots: Spots, ends: Ends, able: Callable[[Array], Ability], process: Process
+) -> _Asked:
+    """What the leads of some spots are for."""
+    deviation, can = _BLENDED * process.tolerance, able(spots.ends.place)
+    speed = spots.allowed(feed, can, process.tolerance)
+    full = sizes.wanted(lead, speed, can, deviation, spots.bend)
+    if lead.length is not None or lead.radius is not None or lead.shape == "line":
+        speed = np.minimum(speed, sizes.arrival(full, can, deviation, spots.bend, spots.ahead))
+    return _Asked(ends, spots, can, np.maximum(speed, 1e-6), full, deviation)
 
 
-def _beyond(curve: Curve, segment: IntArray, distance: Array, way: float) -> tuple[Array, Array]:
-    """Where the tool is, and its direction, ``way`` m beyond places of a closed curve."""
-    length = curves.lengths(curve)
-    ends = np.cumsum(length)
-    at = np.mod(ends[segment] - length[segment] + distance + way, ends[-1])
-    on = np.minimum(np.searchsorted(ends, at, side="left"), len(length) - 1)
-    return curves.evaluate(curve, on, at - (ends[on] - length[on]))
+def _tried(asked: _Asked, waste: Waste) -> Tried:
+    """The best leads that fit, of the full size and of smaller ones."""
+    full = asked.full
+    exists = full.length > 0.0
+    share, size = np.where(exists, 0.0, 1.0), Size(*(np.zeros_like(column) for column in full))
+    for factor, turned in SMALLER:
+        if turned < 1.0 and not full.turn.any():
+            continue
+        smaller = full.scaled(factor, turned)
+        _improve(share, size, asked, smaller, np.flatnonzero(share < REACHED), waste)
+    return Tried(share, size)
 
 
-def waste_side(cut: Cut, contour: Contour, kerf: float) -> float:
-    """On which side of a cut the waste is: 1 for left, inside of it, and -1 for right, outside."""
-    if contour.is_hole:
-        return 1.0
-    inside = kerf > 0.0 and curves.signed_area(cut.curve) < curves.signed_area(contour.curve)
-    return 1.0 if inside else -1.0
+def _improve(share: Array, size: Size, asked: _Asked, trial: Size, which: IntArray, waste: Waste) -> None:
+    """Put leads of another size, (N,), into ``share`` and ``size`` where they fit and bring more, of some places."""
+    found = asked.shares(trial.chosen(which), which)
+    better = found > share[which] + _ALIKE
+    which, found = which[better], found[better]
+    free = waste.is_free(shapes.ways(asked.ends.chosen(which), trial.chosen(which)))
+    for column, new in zip(size, trial, strict=True):
+        column[which[free]] = new[which[free]]
+    share[which[free]] = found[free]
 
 
-def _tried(ends: Ends, size: Size, waste: Waste) -> Tried:
-    """The largest leads that fit, of sizes ``size`` and smaller."""
-    exists = (size.line + size.radius) > 0.0
-    share = np.where(exists, 0.0, 1.0)
-    for factor in FACTORS:
-        left = np.flatnonzero(share == 0.0)
-        if not len(left):
-            break
-        free = waste.is_free(shapes.ways(ends.chosen(left), size.chosen(left).scaled(factor)))
-        share[left[free]] = factor
-    return Tried(share, Size(size.line * share, size.radius * share, size.turn, size.angle))
-
-
-def _from_the_middle(tried: Tried, full: Size, rows: _Rows, inwards: Ends, cuts: Sequence[Cut], waste: Waste) -> Tried:
-    """Leads from the middle of holes that leave no room for others; ``full`` is the size that leads should have."""
+def _from_the_middle(tried: Tried, asked: _Asked, rows: Places, cuts: Sequence[Cut], waste: Waste) -> Tried:
+    """Leads from the middle of holes that leave no room for others."""
     best = np.zeros(len(cuts))
     np.maximum.at(best, rows.cut, tried.share)
-    short = np.flatnonzero((best[rows.cut] < _ENOUGH) & (rows.begin.side > 0.0))
+    short = np.flatnonzero((best[rows.cut] < REACHED) & (rows.begin.ends.side > 0.0) & (asked.full.length > 0.0))
     if not len(short):
         return tried
     room = {index: _inscribed(cuts[index].curve) for index in np.unique(rows.cut[short]).tolist()}
-    half = 0.5 * np.array([room[index] for index in rows.cut[short].tolist()])
-    share, size = tried.share.copy(), Size(*(column.copy() for column in tried.size))
+    half = np.zeros(len(rows.cut))
+    half[short] = 0.5 * np.array([room[index] for index in rows.cut[short].tolist()])
+    none, turn = np.zeros_like(half), np.full_like(half, np.pi)
     for factor in CENTRE:
-        arcs = Size(np.zeros(len(short)), factor * half, np.full(len(short), np.pi), np.zeros(len(short)))
-        part = np.minimum(arcs.length / full.length[short], 1.0)
-        better = waste.is_free(shapes.ways(inwards.chosen(short), arcs)) & (part > share[short])
-        for column, new in zip(size, arcs, strict=True):
-            column[short[better]] = new[better]
-        share[short[better]] = part[better]
-    return Tried(share, size)
+        _improve(tried.share, tried.size, asked, Size(none, factor * half, turn, none), short, waste)
+    return tried
 
 
 def _inscribed(curve: Curve) -> float:
@@ -251,17 +255,17 @@ def _inscribed(curve: Curve) -> float:
 
 
 def _best(into: Array, out: Array) -> BoolArray:
-    """Which places of a cut have the longest lead-ins, and of these the longest lead-outs."""
-    longest = into == into.max()
-    return np.asarray(longest & (out == out[longest].max()))
+    """Which places of a cut have the best lead-ins, and of these the best lead-outs."""
+    fastest = into >= min(into.max(), REACHED) - _ALIKE
+    return np.asarray(fastest & (out >= min(out[fastest].max(), REACHED) - _ALIKE))
 
 
-def _approach(rows: _Rows, into: Tried, out: Tried, row: int) -> Approach:
+def _approach(rows: Places, into: Tried, out: Tried, row: int) -> Approach:
     return Approach(
         segment=int(rows.segment[row]),
         distance=float(rows.distance[row]),
-        lead_in=shapes.lead_in(rows.begin, into.size, row) if into.share[row] else None,
-        lead_out=shapes.lead_out(rows.end, out.size, row) if out.share[row] else None,
+        lead_in=shapes.lead_in(rows.begin.ends, into.size, row) if into.share[row] else None,
+        lead_out=shapes.lead_out(rows.end.ends, out.size, row) if out.share[row] else None,
         share=float(into.share[row]),
     )
 
@@ -270,14 +274,14 @@ def _findings(cuts: Sequence[Cut], found: Sequence[tuple[Approach, ...]], proces
     """What a person should know: which lead-ins are shorter than they should be, and which cuts have none."""
     if process.lead_in.shape == "none":
         return ()
-    short = [(choices[0].share, cuts[k]) for k, choices in enumerate(found) if choices and choices[0].share < 1.0]
+    short = [(choices[0].share, cuts[k]) for k, choices in enumerate(found) if choices and choices[0].share < REACHED]
     some = sorted((one for one in short if one[0] > 0.0), key=lambda one: (one[0], one[1].contour))
     none = [cut for share, cut in short if share == 0.0]
     findings = []
     if some:
-        names = ", ".join(f"contour {cut.contour} to {100.0 * share:.0f} %" for share, cut in some[:_NAMED])
+        names = ", ".join(f"contour {cut.contour} at {100.0 * share:.0f} %" for share, cut in some[:_NAMED])
         more = f" and {len(some) - _NAMED} more" if len(some) > _NAMED else ""
-        what = f"{len(some)} lead-ins are shortened for lack of room: {names}{more}"
+        what = f"{len(some)} lead-ins have no room to reach the speed of the cut, which begins slower: {names}{more}"
         findings.append(Finding(what, where=some[0][1].where, hint=_ROOM, kind="lead"))
     if none:
         places = ", ".join(f"contour {cut.contour} at {_at(cut)}" for cut in none[:_NAMED])

@@ -23,6 +23,8 @@ _MORE: Final = 1.15
 _SIDEWAYS: Final = 0.7
 """Part of the acceleration that an arc may need at the feed; the rest still speeds the tool up."""
 
+_SAFE: Final = 0.95  # of the acceleration
+_LEAST_JUMP: Final = 0.25  # of what is allowed, where the contour itself bends away from the lead
 _BLEND: Final = 0.0062  # see `motion.corners`
 _SHORTEST: Final = 1e-4  # m
 
@@ -50,9 +52,9 @@ class Size(NamedTuple):
         """Of the whole lead, (N,) m."""
         return self.line + self.radius * self.turn
 
-    def scaled(self, factor: float) -> Size:
-        """The same shape, smaller."""
-        return Size(self.line * factor, self.radius * factor, self.turn, self.angle)
+    def scaled(self, factor: float, turned: float = 1.0) -> Size:
+        """The same shape, smaller; the arc turns by a part of its angle."""
+        return Size(self.line * factor, self.radius * factor, self.turn * turned, self.angle)
 
     def chosen(self, which: IntArray | BoolArray) -> Size:
         """Those of some leads."""
@@ -88,7 +90,7 @@ def bend(feed: Array, able: Ability, deviation: float) -> Array:
     return np.maximum(_MORE * smallest_radius(feed, able, deviation), _SHORTEST)
 
 
-def wanted(lead: Lead, feed: Array, able: Ability, deviation: float) -> Size:
+def wanted(lead: Lead, feed: Array, able: Ability, deviation: float, beyond: Array) -> Size:
     """The size that a lead should have where the tool is to go at ``feed``, (N,) m/s.
 
     Args:
@@ -96,6 +98,7 @@ def wanted(lead: Lead, feed: Array, able: Ability, deviation: float) -> Size:
         feed: at the contour.
         able: what the tool can do there.
         deviation: that a blend may have, m.
+        beyond: curvature of the contour, (N,) 1/m, positive where it turns to the side of the lead.
     """
     none, turn = np.zeros(len(feed)), np.full(len(feed), lead.angle)
     needed = _MORE * run_up(feed, able)
@@ -110,10 +113,52 @@ def wanted(lead: Lead, feed: Array, able: Ability, deviation: float) -> Size:
     elif lead.length is not None:
         radius = length / turn if lead.shape == "arc" else 0.5 * length / turn
     else:
-        radius = bend(feed, able, deviation)
+        radius = _radius(feed, able, deviation, beyond, after_line=lead.shape == "line+arc")
         if lead.shape == "arc":
-            radius = np.maximum(radius, _MORE * length / turn)
+            radius = np.maximum(radius, length / turn)
     line = none if lead.shape == "arc" else np.maximum(length - radius * turn, 0.0)
     if lead.shape == "line+arc" and lead.length is None:
         line = np.maximum(length - 0.5 * radius * turn, _SHORTEST)
     return Size(line, radius, turn, none)
+
+
+def _radius(feed: Array, able: Ability, deviation: float, beyond: Array, *, after_line: bool) -> Array:
+    """The radius on which the tool can go at the feed, and over into a contour that itself is bent."""
+    by_acceleration = feed**2 / (_SIDEWAYS * able.acceleration)
+    # At a constant speed v the jerk is v^3 k^2 along the path, and v^3 times the change of k across it.
+    left = np.sqrt(np.maximum(1.0 - (feed**3 * beyond**2 / able.jerk) ** 2, _LEAST_JUMP**2))
+    jump = (2.0 * left * able.jerk / feed**3 * np.sqrt(max(deviation, 1e-7) / _BLEND)) ** (2.0 / 3.0) / _MORE
+    bend = np.maximum(jump + beyond, _LEAST_JUMP * jump)
+    if after_line:
+        bend = np.minimum(bend, _MORE * jump)
+    return np.asarray(np.maximum(np.maximum(_MORE * by_acceleration, 1.0 / bend), _SHORTEST))
+
+
+def arrival(size: Size, able: Ability, deviation: float, beyond: Array, ahead: Array) -> Array:
+    """How fast the tool comes to the contour on leads, and over into it, about, (N,) m/s.
+
+    On an arc of radius r the acceleration a is shared: from the speed u it comes to v on the way
+    (asin(v^2 / a r) - asin(u^2 / a r)) r / 2, and never beyond the square root of a r.
+
+    Args:
+        size: of the leads.
+        able: what the tool can do there.
+        deviation: that a blend may have, m.
+        beyond: curvature of the contour as `wanted` takes it.
+        ahead: how far the contour goes on as it begins, (N,) m; a blend takes room on both sides.
+    """
+    a, j = _SAFE * able.acceleration, able.jerk
+    length = size.length
+    steady = 0.5 * (np.sqrt((a * a / j) ** 2 + 8.0 * a * length) - a * a / j)
+    speed = np.where(steady >= a * a / j, steady, np.cbrt(length**2 * np.where(np.isfinite(j), j, 0.0)))
+    arc = size.radius * size.turn > 0.0
+    radius = np.where(arc, size.radius, 1.0)
+    most = a * radius
+    so_far = np.arcsin(np.minimum(2.0 * a * size.line / most, 1.0))
+    on_arc = np.sqrt(most * np.sin(np.minimum(so_far + 2.0 * size.turn, 0.5 * np.pi)))
+    jump = np.maximum(np.abs(1.0 / radius - beyond), 1e-9)
+    room = np.minimum(np.where(size.line > 0.0, 0.5, 0.98) * radius * size.turn, 0.7 * ahead)
+    half = np.minimum(np.minimum(np.sqrt(deviation / (_BLEND * jump)), 0.9 * radius), room)
+    bent = np.maximum(np.abs(beyond), 1.0 / radius)
+    over = np.cbrt(j / np.hypot(0.5 * jump / np.maximum(half, 1e-9), bent**2))
+    return np.asarray(np.where(arc, np.minimum(np.minimum(speed, on_arc), over), speed))

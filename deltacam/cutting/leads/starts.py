@@ -62,7 +62,7 @@ def starts(curve: Curve, rule: StartRule, *, count: int, rounding: float) -> tup
         if len(corners):
             return corners, np.zeros(len(corners))
     if rule == "best":
-        return _spread(curve, length, count)
+        return _spread(length, count)
     straight = np.where(curve.bulges == 0.0, length, 0.0)
     longest = int(np.argmax(straight if straight.any() else length))
     return np.array([longest]), 0.5 * length[[longest]]
@@ -78,14 +78,20 @@ def _corners(curve: Curve, length: Array, rounding: float) -> IntArray:
     return np.flatnonzero((sharp | behind) & (length > 2.0 * rounding))
 
 
-def _spread(curve: Curve, length: Array, count: int) -> tuple[IntArray, Array]:
-    """Places around the cut; where one lies on a long straight edge, it is moved to the middle of that."""
+def _spread(length: Array, count: int) -> tuple[IntArray, Array]:
+    """Places around the cut, each on the longest line or arc of its share of the way, as far from its ends as it can.
+
+    Near the end of a line there is a corner, or a bend, that leaves no room for the blend with a lead.
+    """
     ends = np.cumsum(length)
     share = ends[-1] / count
-    at = (np.arange(count) + 0.5) * share
-    segment = np.minimum(np.searchsorted(ends, at, side="right"), len(length) - 1)
-    distance = at - (ends[segment] - length[segment])
-    middle = (curve.bulges[segment] == 0.0) & (length[segment] > 0.5 * share) & (length[segment] < 2.5 * share)
-    distance = np.where(middle, 0.5 * length[segment], distance)
+    first, last = share * np.arange(count), share * np.arange(1, count + 1)
+    # What every segment has in every share of the way, (count, segments).
+    low = np.maximum(first[:, None], (ends - length)[None])
+    high = np.minimum(last[:, None], ends[None])
+    segment = np.argmax(high - low, axis=1)
+    start, reach = (ends - length)[segment], length[segment]
+    middle = 0.5 * (low + high)[np.arange(count), segment] - start
+    distance = np.where(reach < 2.5 * share, 0.5 * reach, np.clip(middle, 0.5 * share, reach - 0.5 * share))
     places = np.unique(np.stack([segment, distance], axis=1), axis=0)
     return places[:, 0].astype(np.int64), places[:, 1]

@@ -1,21 +1,29 @@
 """Changes that make an order cheaper: stretches turned or moved by new steps to near cuts, and other places.
 
-For a cut a and a near cut c, the step behind a is taken out and c put behind a, in all the ways that the steps of one
-or two more places allow (2-opt, Or-opt and or-3opt); likewise the step before a. A change is made as soon as it is found.
+A change takes out two or three steps and joins the loose ends again (2-opt, Or-opt and the or-3opt that turns nothing).
+For a cut and the cuts near to it, one new step joins these two; the changes with such a step are tried while what the
+steps taken out cost is more than what the new ones cost (Lin and Kernighan 1973). A change is made when it is found.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final
+from typing import Final, NamedTuple
 
 from deltacam.cutting.ordering.way import Way
 
 GAIN: Final = 1e-9
 """s; what saves less is rounding."""
 
-_RUN: Final = 3  # cuts of a stretch that is tried beside a near cut
-_THIRD: Final = 5  # near cuts that are tried for the third step
+_RUN: Final = 3  # cuts of a stretch that is moved beside a near cut
+_SECOND: Final = 5  # near cuts that are tried for a second new step
+
+
+class Change(NamedTuple):
+    """A change that was made: what it saves, s, and the cuts beside the new steps."""
+
+    saved: float
+    beside: tuple[int, ...]
 
 
 class Descent:
@@ -24,6 +32,7 @@ class Descent:
     def __init__(self, way: Way, near: list[list[tuple[int, float]]], places: list[range], longest: int) -> None:
         """Take an order, the near cuts of each cut, the places of each, and the longest stretch that is moved."""
         self._way, self._near, self._places, self._longest = way, near, places, longest
+        self._second = [[cut for cut, _ in cuts[:_SECOND]] for cuts in near]
         self._size = len(way.sequence)
 
     def run(self, touched: Iterable[int]) -> float:
@@ -32,40 +41,31 @@ class Descent:
         while waiting:
             cut = next(iter(waiting))
             del waiting[cut]
-            while True:
-                gain, moved = self._at(cut)
-                if gain <= 0.0:
-                    break
-                saved += gain
-                for other in moved:
-                    waiting[other] = None
+            while (change := self._about(cut)) is not None:
+                saved += change.saved
+                waiting.update(dict.fromkeys(change.beside))
         return saved
 
-    def swap(self, p: int, q: int, r: int) -> tuple[float, tuple[int, ...]]:
-        """Let two stretches change places; what that saves, which may be less than nothing, and the cuts beside."""
-        sequence, size = self._way.sequence, self._size
-        ends = [sequence[p - 1], sequence[p], sequence[q - 1], sequence[q], sequence[r - 1], sequence[r - size]]
+    def swap(self, p: int, q: int, r: int) -> Change:
+        """Let two stretches change places; that may save less than nothing."""
+        sequence = self._way.sequence
+        ends = sequence[p - 1], sequence[p], sequence[q - 1], sequence[q], sequence[r - 1], sequence[r - self._size]
         a, b, c, d, e, f = (self._way.place[cut] for cut in ends)
         rows = self._way.rows
-        gain = rows[a][b] + rows[c][d] + rows[e][f] - rows[a][d] - rows[e][b] - rows[c][f]
-        return self._swap(gain, p, q, r)
+        return self._swap(rows[a][b] + rows[c][d] + rows[e][f] - rows[a][d] - rows[e][b] - rows[c][f], p, q, r)
 
-    def _at(self, a: int) -> tuple[float, tuple[int, ...]]:
-        """Make one change about a cut; what it saves, and the cuts beside the new steps."""
-        gain, moved = self._begin(a)
-        if gain > 0.0:
-            return gain, moved
-        gain, moved = self._behind(a)
-        return (gain, moved) if gain > 0.0 else self._before(a)
+    def _about(self, a: int) -> Change | None:
+        """Make one change about a cut, if there is one."""
+        return self._begin(a) or self._swaps(a) or self._turns_behind(a) or self._turns_before(a)
 
-    def _begin(self, a: int) -> tuple[float, tuple[int, ...]]:
+    def _begin(self, a: int) -> Change | None:
         """Begin a cut at a better place."""
         places = self._places[a]
         if len(places) < 2:
-            return 0.0, ()
+            return None
         way = self._way
-        sequence, rows, place, at = way.sequence, way.rows, way.place, way.position[a]
-        before, after = sequence[at - 1], sequence[at + 1 - self._size]
+        rows, place, at = way.rows, way.place, way.position[a]
+        before, after = way.sequence[at - 1], way.sequence[at + 1 - self._size]
         row, reached, here = rows[place[before]], place[after], place[a]
         now = row[here] + rows[here][reached]
         least, best = now - GAIN, -1
@@ -76,203 +76,133 @@ class Descent:
                 if cost < least:
                     least, best = cost, other
         if best < 0:
-            return 0.0, ()
+            return None
         way.begin(a, best)
-        return now - least, (before, after)
+        return Change(now - least, (before, after))
 
-    def _behind(self, a: int) -> tuple[float, tuple[int, ...]]:
-        """Let another cut follow a."""
-        way, size = self._way, self._size
-        sequence, position, rows, place, mirror = way.sequence, way.position, way.rows, way.place, way.mirror
+    def _swaps(self, a: int) -> Change | None:
+        """Let two stretches change places, so that a near cut comes behind ``a``: nothing is turned."""
+        way, size, near = self._way, self._size, self._second
+        sequence, position, rows, place = way.sequence, way.position, way.rows, way.place
         g = position[a] + 1
-        if g > size - 1 and g > size:
-            return 0.0, ()
-        follows = sequence[g - size]
-        row, at_follows = rows[place[a]], place[follows]
-        now = row[at_follows]
-        from_mirror = mirror[place[a]]
+        follows = place[sequence[g - size]]
+        row = rows[place[a]]
+        now = row[follows]
         for c, bound in self._near[a]:
             if bound >= now:
                 break
             k, at_c = position[c], place[c]
-            if k >= g:
-                if k == g:
+            left = now - row[at_c]
+            if left < GAIN or k == g:
+                continue
+            b = sequence[k - 1]
+            row_b = rows[place[b]]
+            left += row_b[at_c]
+            thirds = {k + 1, k + 2, k + 3, g - 1, g - 2, g - 3}
+            thirds.update([position[e] for e in near[b]])
+            for m in thirds:
+                # What was behind a, before c and before m comes behind m - 1, a and b: right in one order round.
+                if not (g < k < m <= size or 0 < k < m < g or 0 < m < g < k):
                     continue
-                # c, later, comes to stand behind a.
-                left = now - row[at_c]
-                b = sequence[k - 1]
-                at_b = place[b]
-                if left > GAIN:
-                    more = left + rows[at_b][at_c]
-                    row_b = rows[at_b]
-                    for r in self._ends(k, follows):
-                        last, next_ = place[sequence[r - 1]], place[sequence[r - size]]
-                        gain = more + rows[last][next_] - rows[last][at_follows] - row_b[next_]
-                        if gain > GAIN and r - g <= self._longest and way.may_swap(g, k, r):
-                            return self._swap(gain, g, k, r)
-                    for p in range(max(1, g - _RUN), g):
-                        before, start = place[sequence[p - 1]], place[sequence[p]]
-                        gain = more + rows[before][start] - rows[before][at_follows] - row_b[start]
-                        if gain > GAIN and k - p <= self._longest and way.may_swap(p, g, k):
-                            return self._swap(gain, p, g, k)
-                left = now - row[mirror[at_c]]
-                if left > GAIN:
-                    next_ = place[sequence[k + 1 - size]]
-                    more = left + rows[at_c][next_]
-                    gain = more - rows[mirror[at_follows]][next_]
-                    if gain > GAIN and k + 1 - g <= self._longest and way.may_turn(g, k + 1):
-                        gain -= way.turned_inside(g, k + 1)
-                        if gain > GAIN:
-                            return self._turn(gain, g, k + 1)
-                    for q in range(max(g + 1, k + 1 - _RUN), k + 1):
-                        first, before = place[sequence[q]], place[sequence[q - 1]]
-                        gain = more + rows[before][first] - rows[mirror[first]][at_follows] - rows[before][next_]
-                        if gain > GAIN and k + 1 - g <= self._longest and way.may_swap(g, q, k + 1):
-                            if way.may_turn(q, k + 1):
-                                gain -= way.turned_inside(q, k + 1)
-                                if gain > GAIN:
-                                    return self._swap(gain, g, q, k + 1, turned=(g, g + k + 1 - q))
-            elif k < g - 1:
-                # c, earlier, comes to stand behind a.
-                left = now - row[at_c]
-                before = place[sequence[k - 1]]
-                row_before = rows[before]
-                if left > GAIN:
-                    more = left + row_before[at_c]
-                    for q in self._middles(k, g, follows):
-                        first, last = place[sequence[q]], place[sequence[q - 1]]
-                        gain = more + rows[last][first] - row_before[first] - rows[last][at_follows]
-                        if gain > GAIN and g - k <= self._longest and way.may_swap(k, q, g):
-                            return self._swap(gain, k, q, g)
-                left = now - row[mirror[at_c]]
-                if left > GAIN:
-                    next_ = place[sequence[k + 1]]
-                    more = left + rows[at_c][next_]
-                    for p in range(max(1, k + 1 - _RUN), k + 1):
-                        ahead, start = place[sequence[p - 1]], place[sequence[p]]
-                        gain = more + rows[ahead][start] - rows[ahead][next_] - rows[mirror[start]][at_follows]
-                        if gain > GAIN and g - p <= self._longest and way.may_swap(p, k + 1, g):
-                            if way.may_turn(p, k + 1):
-                                gain -= way.turned_inside(p, k + 1)
-                                if gain > GAIN:
-                                    return self._swap(gain, p, k + 1, g, turned=(p + g - k - 1, g))
-                next_ = place[sequence[k + 1]]
-                gain = now + rows[at_c][next_] - rows[at_c][from_mirror] - rows[mirror[next_]][at_follows]
-                if gain > GAIN and g - k - 1 <= self._longest and way.may_turn(k + 1, g):
-                    gain -= way.turned_inside(k + 1, g)
+                at_m = place[sequence[m - size]]
+                gain = left - row_b[at_m]
+                if gain > GAIN:
+                    row_m = rows[place[sequence[m - 1]]]
+                    gain += row_m[at_m] - row_m[follows]
                     if gain > GAIN:
-                        return self._turn(gain, k + 1, g)
-        return 0.0, ()
+                        p, q, r = (g, k, m) if g < k < m else (k, m, g) if k < m else (m, g, k)
+                        if r - p <= self._longest and way.may_swap(p, q, r):
+                            return self._swap(gain, p, q, r)
+        return None
 
-    def _before(self, a: int) -> tuple[float, tuple[int, ...]]:
-        """Let another cut come before a."""
-        way, size = self._way, self._size
-        sequence, position, rows, place, mirror = way.sequence, way.position, way.rows, way.place, way.mirror
-        g = position[a] or size
-        ahead = sequence[g - 1]
-        at_a, at_ahead = place[a], place[ahead]
-        row = rows[at_ahead]
-        now = row[at_a]
+    def _turns_behind(self, a: int) -> Change | None:
+        """Join ``a`` to a near cut by a stretch that is turned, taking out the step behind ``a``."""
+        way = self._way
+        position, rows, place, mirror = way.position, way.rows, way.place, way.mirror
+        g, at_a = position[a] + 1, place[a]
+        now = rows[at_a][place[way.sequence[g - self._size]]]
         for c, bound in self._near[a]:
             if bound >= now:
                 break
-            k, at_c = position[c], place[c]
-            if k < g - 1:
-                left = now - rows[at_c][at_a]
-                after = place[sequence[k + 1]]
-                if left > GAIN:
-                    more = left + rows[at_c][after]
-                    for p in range(max(1, k + 1 - _RUN), k + 1):
-                        before, start = place[sequence[p - 1]], place[sequence[p]]
-                        gain = more + rows[before][start] - rows[before][after] - row[start]
-                        if gain > GAIN and g - p <= self._longest and way.may_swap(p, k + 1, g):
-                            return self._swap(gain, p, k + 1, g)
-                    for r in range(g + 1, min(g + _RUN, size) + 1):
-                        last, next_ = place[sequence[r - 1]], place[sequence[r - size]]
-                        gain = more + rows[last][next_] - rows[last][after] - row[next_]
-                        if gain > GAIN and r - k <= self._longest and way.may_swap(k + 1, g, r):
-                            return self._swap(gain, k + 1, g, r)
-                at_mirror = mirror[at_c]
-                left = now - rows[at_mirror][at_a]
-                if left > GAIN:
-                    before = place[sequence[k - 1]]
-                    more = left + rows[before][at_c]
-                    gain = more - rows[before][mirror[at_ahead]]
-                    if gain > GAIN and g - k <= self._longest and way.may_turn(k, g):
-                        gain -= way.turned_inside(k, g)
-                        if gain > GAIN:
-                            return self._turn(gain, k, g)
-                    for q in range(k + 1, min(k + _RUN, g - 1) + 1):
-                        last, first = place[sequence[q - 1]], place[sequence[q]]
-                        gain = more + rows[last][first] - rows[before][first] - row[mirror[last]]
-                        if gain > GAIN and g - k <= self._longest and way.may_swap(k, q, g) and way.may_turn(k, q):
-                            gain -= way.turned_inside(k, q)
-                            if gain > GAIN:
-                                return self._swap(gain, k, q, g, turned=(k + g - q, g))
-            elif k > g:
-                left = now - rows[at_c][at_a]
-                next_ = place[sequence[k + 1 - size]]
-                if left > GAIN:
-                    more = left + rows[at_c][next_]
-                    for q in range(max(g + 1, k + 1 - _RUN), k + 1):
-                        first, last = place[sequence[q]], place[sequence[q - 1]]
-                        gain = more + rows[last][first] - row[first] - rows[last][next_]
-                        if gain > GAIN and k + 1 - g <= self._longest and way.may_swap(g, q, k + 1):
-                            return self._swap(gain, g, q, k + 1)
-                    for q in range(g + 1, min(g + _RUN, k) + 1):
-                        first, last = place[sequence[q]], place[sequence[q - 1]]
-                        gain = more + rows[last][first] - row[first] - rows[last][next_]
-                        if gain > GAIN and k + 1 - g <= self._longest and way.may_swap(g, q, k + 1):
-                            return self._swap(gain, g, q, k + 1)
-                b = place[sequence[k - 1]]
-                gain = now + rows[b][at_c] - row[mirror[b]] - rows[mirror[at_a]][at_c]
-                if gain > GAIN and k - g <= self._longest and way.may_turn(g, k):
-                    gain -= way.turned_inside(g, k)
-                    if gain > GAIN:
-                        return self._turn(gain, g, k)
-                at_mirror = mirror[at_c]
-                left = now - rows[at_mirror][at_a]
-                if left > GAIN:
-                    more = left + rows[b][at_c]
-                    for r in range(k + 1, min(k + _RUN, size) + 1):
-                        last, next_ = place[sequence[r - 1]], place[sequence[r - size]]
-                        gain = more + rows[last][next_] - row[mirror[last]] - rows[b][next_]
-                        if gain > GAIN and r - g <= self._longest and way.may_swap(g, k, r) and way.may_turn(k, r):
-                            gain -= way.turned_inside(k, r)
-                            if gain > GAIN:
-                                return self._swap(gain, g, k, r, turned=(g, g + r - k))
-        return 0.0, ()
+            k = position[c]
+            change = None
+            if rows[at_a][mirror[place[c]]] < now:  # c, turned, comes behind a
+                if k > g:
+                    change = self._turned(g, k + 1)
+                change = change or self._moved_backwards(range(k, k - _RUN, -1), range(k + 1, k + 2), g)
+            if change is None and g > 1 and rows[place[c]][mirror[at_a]] < now:  # a, turned, comes behind c
+                if k < g - 2:
+                    change = self._turned(k + 1, g)
+                change = change or self._moved_backwards(range(g - 1, g - 1 - _RUN, -1), range(g, g + 1), k + 1)
+            if change is not None:
+                return change
+        return None
 
-    def _ends(self, k: int, follows: int) -> list[int]:
-        """The steps behind position k at which a stretch from there may end that ``follows`` is to come behind."""
-        position, size = self._way.position, self._size
-        found = [r for r in range(k + 1, min(k + _RUN, size) + 1)]
-        for x, _ in self._near[follows][:_THIRD]:
-            if position[x] >= k + _RUN:
-                found.append(position[x] + 1)
-        return found
+    def _turns_before(self, a: int) -> Change | None:
+        """The same taking out the step before ``a``."""
+        way, size = self._way, self._size
+        position, rows, place, mirror = way.position, way.rows, way.place, way.mirror
+        i, at_a = position[a] or size, place[a]
+        now = rows[place[way.sequence[i - 1]]][at_a]
+        for c, bound in self._near[a]:
+            if bound >= now:
+                break
+            k = position[c]
+            change = None
+            if rows[mirror[place[c]]][at_a] < now:  # c, turned, comes before a
+                if k < i - 1:
+                    change = self._turned(k, i)
+                change = change or self._moved_backwards(range(k, k + 1), range(k + 1, k + 1 + _RUN), i)
+            if change is None and i < size and rows[mirror[at_a]][place[c]] < now:  # a, turned, comes before c
+                if k > i + 1:
+                    change = self._turned(i, k)
+                change = change or self._moved_backwards(range(i, i + 1), range(i + 1, i + 1 + _RUN), k)
+            if change is not None:
+                return change
+        return None
 
-    def _middles(self, k: int, g: int, follows: int) -> list[int]:
-        """The steps between positions k and g at which the first of two stretches may end."""
-        position = self._way.position
-        found = [*range(k + 1, min(k + 1 + _RUN, g))]
-        found += range(max(k + 1 + _RUN, g - _RUN), g)
-        for x, _ in self._near[follows][:_THIRD]:
-            if k + _RUN <= position[x] < g - _RUN - 1:
-                found.append(position[x] + 1)
-        return found
+    def _turned(self, p: int, r: int) -> Change | None:
+        """Turn the stretch from step p to step r, if that saves anything."""
+        way = self._way
+        sequence, rows, place, mirror = way.sequence, way.rows, way.place, way.mirror
+        first, last = place[sequence[p]], place[sequence[r - 1]]
+        row, after = rows[place[sequence[p - 1]]], place[sequence[r - self._size]]
+        gain = row[first] + rows[last][after] - row[mirror[last]] - rows[mirror[first]][after]
+        if gain < GAIN or r - p > self._longest or not way.may_turn(p, r):
+            return None
+        gain -= way.turned_inside(p, r)
+        if gain < GAIN:
+            return None
+        way.turn(p, r)
+        return Change(gain, (sequence[p - 1], sequence[p], sequence[r - 1], sequence[r - self._size]))
 
-    def _turn(self, gain: float, p: int, r: int) -> tuple[float, tuple[int, ...]]:
-        sequence, size = self._way.sequence, self._size
-        self._way.turn(p, r)
-        return gain, (sequence[p - 1], sequence[p], sequence[r - 1], sequence[r - size])
+    def _moved_backwards(self, firsts: range, ends: range, to: int) -> Change | None:
+        """Turn a short stretch from one of ``firsts`` to one of ``ends``, and put it into the step ``to``, if it saves."""
+        way, size = self._way, self._size
+        sequence, rows, place, mirror = way.sequence, way.rows, way.place, way.mirror
+        ahead, behind = place[sequence[to - 1]], place[sequence[to - size]]
+        row, now = rows[ahead], rows[ahead][behind]
+        for i in firsts:
+            for j in ends:
+                if i < 1 or j > size or i <= to <= j:
+                    continue
+                first, last = place[sequence[i]], place[sequence[j - 1]]
+                before, after = rows[place[sequence[i - 1]]], place[sequence[j - size]]
+                gain = now + before[first] + rows[last][after]
+                gain -= row[mirror[last]] + rows[mirror[first]][behind] + before[after]
+                if gain < GAIN:
+                    continue
+                p, q, r = (to, i, j) if to < i else (i, j, to)
+                if r - p > self._longest or not way.may_turn(i, j) or not way.may_swap(p, q, r):
+                    continue
+                gain -= way.turned_inside(i, j)
+                if gain > GAIN:
+                    way.turn(i, j)
+                    return self._swap(gain, p, q, r)
+        return None
 
-    def _swap(
-        self, gain: float, p: int, q: int, r: int, turned: tuple[int, int] | None = None
-    ) -> tuple[float, tuple[int, ...]]:
-        sequence, size, middle = self._way.sequence, self._size, p + r - q
+    def _swap(self, gain: float, p: int, q: int, r: int) -> Change:
+        sequence, middle = self._way.sequence, p + r - q
         self._way.swap(p, q, r)
-        if turned is not None:
-            self._way.turn(*turned)
         beside = sequence[p - 1], sequence[p], sequence[middle - 1], sequence[middle]
-        return gain, (*beside, sequence[r - 1], sequence[r - size])
+        return Change(gain, (*beside, sequence[r - 1], sequence[r - self._size]))

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from deltacam.cutting.ordering.problem import Problem
+from deltacam.cutting.ordering.problem import Problem, distance
 from deltacam.model import Array, IntArray
 
 NEAR: Final = 8
 """How many near cuts are tried."""
 
 _CENTRES: Final = 10
-_ROWS: Final = 200_000
+_ROWS: Final = 500_000  # ways at a time, which bounds the memory
 _DIRECTIONS: Final = 12
 _BEYOND: Final = 1.02  # of the distance that heat wants
 
@@ -75,19 +76,34 @@ def _pairs(cut: IntArray, other: IntArray) -> IntArray:
 
 
 def _least(problem: Problem, pairs: IntArray) -> Array:
-    """The least cost of a way between the cuts of each pair, (P,) s."""
+    """What the way costs between the two places of each pair of cuts that are nearest to each other, (P,) s.
+
+    It is the cheaper one of there and back.
+    """
     sizes = np.diff(problem.first)
-    least = np.empty(len(pairs))
-    per_pair = sizes[pairs[:, 0]] * sizes[pairs[:, 1]]
-    slices = np.searchsorted(np.cumsum(per_pair), np.arange(0, int(per_pair.sum()) + _ROWS, _ROWS))
-    for low, high in zip(slices[:-1].tolist(), slices[1:].tolist(), strict=True):
-        if high > low:
-            part, counts = pairs[low:high], per_pair[low:high]
-            start = np.cumsum(counts) - counts
-            inside = np.arange(int(counts.sum())) - np.repeat(start, counts)
-            width = np.repeat(sizes[part[:, 1]], counts)
-            one = np.repeat(problem.first[part[:, 0]], counts) + inside // width
-            other = np.repeat(problem.first[part[:, 1]], counts) + inside % width
-            there = np.minimum.reduceat(problem.ways(one, other), start)
-            least[low:high] = np.minimum(there, np.minimum.reduceat(problem.ways(other, one), start))
-    return least
+    counts = sizes[pairs[:, 0]] * sizes[pairs[:, 1]]
+    passed = np.concatenate([[0], np.cumsum(counts)])
+    slices = np.unique(np.searchsorted(passed, np.arange(0, passed[-1] + _ROWS, _ROWS))).tolist()
+    found = [np.zeros(0)]
+    for low, high in pairwise([*slices[:-1], len(pairs)]):
+        start = passed[low:high] - passed[low]
+        inside = np.arange(passed[high] - passed[low]) - np.repeat(start, counts[low:high])
+        width = np.repeat(sizes[pairs[low:high, 1]], counts[low:high])
+        one = np.repeat(problem.first[pairs[low:high, 0]], counts[low:high]) + inside // width
+        other = np.repeat(problem.first[pairs[low:high, 1]], counts[low:high]) + inside % width
+        found.append(
+            np.minimum(_cheapest(problem, one, other, start), _cheapest(problem, other, one, start))
+            if _apart(problem)
+            else _cheapest(problem, one, other, start)
+        )
+    return np.concatenate(found)
+
+
+def _cheapest(problem: Problem, left: IntArray, reached: IntArray, start: IntArray) -> Array:
+    """What the shortest of the ways costs, of those from each ``start`` on."""
+    length = distance(problem.ends[left], problem.begins[reached])
+    shortest = np.minimum.reduceat(length, start)
+    counts = np.diff(np.append(start, len(left)))
+    best = np.flatnonzero(length == np.repeat(shortest, counts))
+    best = best[np.searchsorted(best, start)]
+    return problem.ways(left[best], reached[best])

@@ -23,7 +23,10 @@ _SAME: Final = 1e-9  # m
 
 
 class Cost(Protocol):
-    """What ways cost."""
+    """What ways cost.
+
+    What also has ``one``, which takes x and y where one way begins and where it ends, is asked for single ways there.
+    """
 
     def __call__(self, begin: Array, end: Array, /) -> Array:
         """The costs of the straight ways from ``begin`` to ``end``, (N, 2) m in the sheet frame: (N,) s."""
@@ -89,20 +92,24 @@ class Problem:
     def mirrors(self) -> tuple[IntArray, bool]:
         """For every place that of the same cut which is most like it run the other way, (M + 1,).
 
-        And whether all are exactly that, so that a stretch of cuts that is reversed costs the same inside.
+        The mirror of a mirror is the place itself: where that is not so, a place is its own. The other value says
+        whether all are exact, so that a stretch of cuts that is reversed costs the same inside.
         """
         mirror = np.arange(len(self.begins))
-        lopsided = np.flatnonzero(np.abs(self.begins[:-1] - self.ends[:-1]).max(axis=1, initial=0.0) > _SAME)
-        exact = True
-        for place in lopsided.tolist():
-            cut = int(np.searchsorted(self.first, place, side="right")) - 1
-            own = slice(self.first[cut], self.first[cut + 1])
-            off = np.hypot(*(self.begins[own] - self.ends[place]).T) + np.hypot(
-                *(self.ends[own] - self.begins[place]).T
-            )
-            mirror[place] = self.first[cut] + int(off.argmin())
-            exact &= float(off.min()) < _SAME
-        return mirror, exact
+        lopsided = np.flatnonzero(distance(self.begins, self.ends)[:-1] > _SAME)
+        if not len(lopsided):
+            return mirror, True
+        cut = self.owner[lopsided]
+        counts = np.diff(self.first)[cut]
+        start = np.cumsum(counts) - counts
+        place = np.repeat(lopsided, counts)
+        other = np.repeat(self.first[cut] - start, counts) + np.arange(len(place))
+        off = distance(self.begins[other], self.ends[place]) + distance(self.ends[other], self.begins[place])
+        least = np.minimum.reduceat(off, start)
+        equal = np.flatnonzero(off == np.repeat(least, counts))
+        mirror[lopsided] = other[equal[np.searchsorted(equal, start)]]
+        itself = np.arange(len(mirror))
+        return np.where(mirror[mirror] == itself, mirror, itself), bool((least < _SAME).all())
 
 
 class Lookup:
@@ -116,9 +123,8 @@ class Lookup:
 
         def way(left: int, reached: int) -> float:
             found = one(*ends[left], *begins[reached])
-            if heat is not None and left != rest and reached != rest:
-                if found < heat.time and dist(ends[left], begins[reached]) < heat.distance:
-                    found = heat.time
+            if heat is not None and found < heat.time and rest not in {left, reached}:
+                found = heat.time if dist(ends[left], begins[reached]) < heat.distance else found
             if fenced:
                 found += fence(owner[left], owner[reached])
             return found
@@ -126,14 +132,11 @@ class Lookup:
         heat, rest, fence = problem.heat, len(begins) - 1, _fence(problem)
         self.rows: list[dict[int, float]] = [_Row(way, place) for place in range(len(begins))]
 
-    def size(self) -> int:
-        """How many ways are remembered."""
-        return sum(map(len, self.rows))
-
-    def forget(self) -> None:
-        """Give back the memory."""
-        for row in self.rows:
-            row.clear()
+    def forget(self, *, above: int) -> None:
+        """Give the memory back where more than so many are remembered."""
+        if sum(map(len, self.rows)) > above:
+            for row in self.rows:
+                row.clear()
 
 
 class _Row(dict[int, float]):
@@ -157,7 +160,11 @@ def _one(problem: Problem) -> Callable[[float, float, float, float], float]:
         return one  # type: ignore[no-any-return]
     if problem.cost is distance:
         return lambda x, y, to_x, to_y: dist((x, y), (to_x, to_y))
-    return lambda x, y, to_x, to_y: float(problem.cost(np.array([[x, y]]), np.array([[to_x, to_y]]))[0])
+
+    def asked(x: float, y: float, to_x: float, to_y: float) -> float:
+        return float(problem.cost(np.array([[x, y]]), np.array([[to_x, to_y]]))[0])
+
+    return asked
 
 
 def _fence(problem: Problem) -> Callable[[int, int], float]:

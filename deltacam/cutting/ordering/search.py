@@ -1,13 +1,15 @@
 """A good order: the nearest first, made cheaper, and then changed at random here and there to get out of dead ends.
 
-Each try swaps two short stretches next to each other, makes the order cheaper again around them, and is taken back
-where the order became dearer (iterated local search, Lourenço, Martin and Stützle 2003; the swap is the double bridge
-of Martin, Otto and Felten 1991, kept local). Tries are counted, not timed, so that the same seed gives the same order.
+Each try swaps two short stretches next to each other, and begins some of the cuts there at any of their places, those
+behind following suit. Then the order is made cheaper again around them, and all is taken back where it became dearer
+(iterated local search, Lourenço, Martin and Stützle 2003; the swap is the double bridge of Martin, Otto and Felten,
+1991, kept local). Tries are counted, not timed, so that the same seed gives the same order.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from random import Random
 from typing import Final
 
@@ -18,13 +20,13 @@ from deltacam.cutting.ordering.places import best_places
 from deltacam.cutting.ordering.problem import Lookup, Problem
 from deltacam.cutting.ordering.way import Way
 
-STRETCH: Final = 10
-"""The most cuts of a stretch that is swapped in a try."""
-
-_LONGEST: Final = 1000  # cuts that one change moves in a try
-_ROUNDING: Final = 1e-12
+_STRETCH: Final = 10  # the most cuts of a stretch that is swapped
+_LONGEST: Final = 1000  # cuts that one change moves while trying
+_MOVED: Final = 0.3  # of the cuts beside a swap begin anywhere
+_FOLLOWING: Final = 8  # the most cuts behind one of them that follow suit
+_ROUNDING: Final = 1e-12  # s
 _REPORTS: Final = 50
-_REMEMBERED: Final = 1_000_000  # ways
+_REMEMBERED: Final = 1_500_000  # ways
 
 
 def search(problem: Problem, *, seed: int, tries: int, progress: Callable[[int, int], None]) -> list[int]:
@@ -36,37 +38,62 @@ def search(problem: Problem, *, seed: int, tries: int, progress: Callable[[int, 
         tries: how many of them.
         progress: is told how many tries are done, and of how many.
     """
-    lookup = Lookup(problem)
-    first = first_order(problem)
-    owner = problem.owner
-    way = Way(problem, lookup, best_places(problem, owner[first].tolist()))
-    places = [
-        range(low, high) for low, high in zip(problem.first[:-1].tolist(), problem.first[1:].tolist(), strict=True)
-    ]
+    lookup, owner = Lookup(problem), problem.owner
+    way = Way(problem, lookup, best_places(problem, owner[first_order(problem)].tolist()))
+    places = [range(low, high) for low, high in pairwise(problem.first.tolist())]
     near = near_cuts(problem)
     Descent(way, near, places, problem.count).run(list(way.sequence))
     way.keep()
-    descent, chance = Descent(way, near, places, _LONGEST), Random(seed)  # noqa: S311  # nothing here is secret
-    for done in range(tries if problem.count > 2 else 0):
+    trial = _Trial(way, Descent(way, near, places, _LONGEST), places, seed)
+    for done in range(tries if problem.count > 1 else 0):
         if done % max(1, tries // _REPORTS) == 0:
             progress(done, tries)
-            if lookup.size() > _REMEMBERED:
-                lookup.forget()
-        _try(way, descent, chance)
+            lookup.forget(above=_REMEMBERED)
+        trial.run()
     progress(tries, tries)
     return best_places(problem, way.sequence[1:])
 
 
-def _try(way: Way, descent: Descent, chance: Random) -> None:
-    size = len(way.sequence)
-    p = 1 + int(chance.random() * (size - 2))
-    q = p + 1 + int(chance.random() * min(STRETCH, size - 1 - p))
-    r = q + 1 + int(chance.random() * min(STRETCH, size - q))
-    if not way.may_swap(p, q, r):
-        return
-    saved, beside = descent.swap(p, q, r)
-    saved += descent.run(beside)
-    if saved >= -_ROUNDING:
-        way.keep()
-    else:
-        way.undo()
+class _Trial:
+    """Changes an order at random, and keeps what is no worse."""
+
+    def __init__(self, way: Way, descent: Descent, places: list[range], seed: int) -> None:
+        self._way, self._descent, self._places = way, descent, places
+        self._random = Random(seed).random  # noqa: S311  # nothing here is secret
+
+    def run(self) -> None:
+        """Make one try."""
+        way, random, size = self._way, self._random, len(self._way.sequence)
+        p = 1 + int(random() * (size - 2))
+        q = p + 1 + int(random() * min(_STRETCH, size - 1 - p))
+        r = q + 1 + int(random() * min(_STRETCH, size - q))
+        if not way.may_swap(p, q, r):
+            return
+        change = self._descent.swap(p, q, r)
+        saved, touched = change.saved, dict.fromkeys(change.beside)
+        for cut in change.beside:
+            if random() < _MOVED:
+                saved += self._begin(cut, touched)
+        if saved + self._descent.run(touched) >= -_ROUNDING:
+            way.keep()
+        else:
+            way.undo()
+
+    def _begin(self, cut: int, touched: dict[int, None]) -> float:
+        """Begin a cut anywhere, and those behind where it is then nearest; what that saves, mostly below nothing."""
+        way, own = self._way, self._places[cut]
+        place, at, size, saved = own[int(self._random() * len(own))], way.position[cut], len(way.sequence), 0.0
+        for _ in range(_FOLLOWING):
+            if place == way.place[cut]:
+                break
+            row, here = way.rows[way.place[way.sequence[at - 1]]], way.place[cut]
+            after = way.place[way.sequence[at + 1 - size]]
+            saved += row[here] + way.rows[here][after] - row[place] - way.rows[place][after]
+            way.begin(cut, place)
+            touched[cut] = None
+            at += 1
+            if at == size:
+                break
+            cut = way.sequence[at]
+            place = min(self._places[cut], key=way.rows[place].__getitem__)
+        return saved

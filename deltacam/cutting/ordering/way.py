@@ -7,6 +7,9 @@ change places. The cuts of a stretch that is run the other way begin at the mirr
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
+
 from deltacam.cutting.ordering.problem import Lookup, Problem
 
 TURN, SWAP, PLACE = range(3)
@@ -55,7 +58,9 @@ class Way:
     def total(self) -> float:
         """The cost of all steps."""
         places = [self.place[cut] for cut in self.sequence]
-        return sum(self.rows[left][reached] for left, reached in zip(places, [*places[1:], places[0]], strict=True))
+        return math.fsum(
+            self.rows[left][reached] for left, reached in zip(places, [*places[1:], places[0]], strict=True)
+        )
 
     def turn(self, p: int, r: int) -> None:
         """Run the stretch from step p to step r the other way."""
@@ -133,6 +138,6 @@ class Way:
         rows, mirror = self.rows, self.mirror
         places = [self.place[cut] for cut in self.sequence[p:r]]
         more = 0.0
-        for left, reached in zip(places, places[1:], strict=False):
+        for left, reached in pairwise(places):
             more += rows[mirror[reached]][mirror[left]] - rows[left][reached]
         return more

@@ -7,8 +7,8 @@ from typing import Any, Final
 
 from deltacam.model import Array
 from deltacam.report.charts import heat_map
-from deltacam.report.picture import sheet_edge
 from deltacam.report.study import Chart, Study, Table
+from deltacam.report.view import sheet_edge
 from deltacam.robot.accuracy.budget import Budget, Contribution, Total, error_map
 from deltacam.robot.accuracy.sources import ANGLES, WIDTHS, Source
 from deltacam.robot.accuracy.wanted import Need, Needs

@@ -10,8 +10,8 @@ import numpy as np
 
 from deltacam.model import Array
 from deltacam.report.charts import heat_map
-from deltacam.report.picture import sheet_edge
 from deltacam.report.study import Chart, Study, Table
+from deltacam.report.view import sheet_edge
 from deltacam.robot.dimensions import HANGING
 from deltacam.robot.rating import (
     Extreme,

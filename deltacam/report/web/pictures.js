@@ -1,7 +1,5 @@
 /* The two pictures in the plane of the sheet: the part with the path of the tool, and the machine from above. */
 
-const RAPID = 0;
-const ENGRAVED = 1;
 const MOST_DOTS = 2000; // setpoints that are drawn as dots
 const REACH = 30; // pixels from the pointer to the path
 
@@ -20,26 +18,31 @@ class Part {
       colours: data.route.colours.map(unpack),
     };
     this.mark = null;
+    this.marks = this.data.marks.map(({ trace, scale }) => new Marks(trace, unpack(scale)));
     Plotly.newPlot(figure, this.traces(0), this.data.layout, { ...config, scrollZoom: true });
     this.overlay = new Overlay(figure);
     figure.on("plotly_relayout", () => this.showSetpoints());
+    figure.on("plotly_afterplot", () => this.showMarks());
+    this.showMarks();
   }
 
   traces(colouring) {
     const path = this.route ? this.path(colouring) : [];
     this.dots = this.data.below.length + path.length;
     const dots = { type: "scatter", mode: "markers", x: [], y: [], marker: { size: 3.5, color: this.data.dots } };
-    return [...this.data.below, ...path, dots, ...this.data.above];
+    const marks = this.marks.map((one) => one.shown);
+    return [...this.data.below, ...path, dots, ...this.data.above, ...marks];
   }
 
-  /** A trace for every colour, those that are rare on top; the rapids are dashed. */
+  /** A trace for every colour and stroke, those that are rare on top; the rapids at the bottom. */
   path(chosen) {
     const { x, y, first, band, colours } = this.route;
+    const { strokes } = this.data;
     const traces = new Map();
     for (let stretch = 0; stretch < first.length; stretch++) {
-      const color = colours[chosen][stretch];
-      const key = band[stretch] === RAPID ? "rapid" : `${band[stretch]} ${color}`;
-      if (!traces.has(key)) traces.set(key, this.trace(band[stretch], this.colourings[chosen].colors[color]));
+      const color = this.colourings[chosen].colors[colours[chosen][stretch]];
+      const key = `${band[stretch]} ${strokes[band[stretch]].color ?? color}`;
+      if (!traces.has(key)) traces.set(key, this.trace({ color, ...strokes[band[stretch]] }));
       const trace = traces.get(key);
       const end = stretch + 1 < first.length ? first[stretch + 1] : x.length - 1;
       for (let i = first[stretch]; i <= end; i++) {
@@ -49,20 +52,25 @@ class Part {
       trace.x.push(null);
       trace.y.push(null);
     }
-    const rapid = traces.get("rapid");
-    traces.delete("rapid");
-    return [...(rapid ? [rapid] : []), ...[...traces.values()].sort((a, b) => b.x.length - a.x.length)];
+    const rank = ({ line, x }) => (line.dash === "solid" ? x.length : 1e9 + x.length);
+    return [...traces.values()].sort((a, b) => rank(b) - rank(a));
   }
 
-  trace(band, color) {
-    const rapid = { color: this.data.rapid, width: 1, dash: "4px,4px" };
-    const line = { color, width: band === ENGRAVED ? 1.5 : 2.6 };
-    return { type: "scatter", mode: "lines", x: [], y: [], line: band === RAPID ? rapid : line };
+  trace(line) {
+    return { type: "scatter", mode: "lines", x: [], y: [], line };
   }
 
   colour(chosen) {
     Plotly.react(this.figure, this.traces(chosen), this.figure.layout);
     this.showSetpoints();
+  }
+
+  /** The numbers and arrows that have room at this scale. */
+  showMarks() {
+    const { xaxis } = this.figure._fullLayout;
+    const perPixel = Math.abs(xaxis.p2d(1) - xaxis.p2d(0));
+    const first = this.dots + 1 + this.data.above.length;
+    this.marks.forEach((one, i) => one.choose(perPixel) && Plotly.restyle(this.figure, one.change, [first + i]));
   }
 
   /** The setpoints as dots, once so few are seen that they can be told apart. */
@@ -109,6 +117,32 @@ class Part {
     const half = Math.max((range[1] - range[0]) / 16, 0.5);
     const around = (middle) => [middle - half, middle + half];
     return Plotly.relayout(this.figure, { "xaxis.range": around(place[0]), "yaxis.range": around(place[1]) });
+  }
+}
+
+/** Marks of which some are shown, by the scale of the picture: of each it is known from which one on it has room. */
+class Marks {
+  constructor(trace, scale) {
+    this.all = { x: unpack(trace.x), y: unpack(trace.y), text: trace.text, side: trace.textposition };
+    this.angle = trace.marker.angle;
+    this.scale = scale;
+    this.shown = { ...trace, x: [], y: [] };
+    this.count = 0;
+  }
+
+  /** Whether others than before are shown where a pixel is so many mm. */
+  choose(perPixel) {
+    const chosen = [...this.scale.keys()].filter((i) => perPixel <= this.scale[i]);
+    if (chosen.length === this.count) return false;
+    this.count = chosen.length;
+    const of = (values) => values && chosen.map((i) => values[i]);
+    const { x, y, text, side } = this.all;
+    this.change = { x: [of(x)], y: [of(y)] };
+    if (text) Object.assign(this.change, { text: [of(text)], textposition: [of(side)] });
+    if (this.angle) this.change["marker.angle"] = [of(this.angle)];
+    const marker = { ...this.shown.marker, ...(this.angle && { angle: of(this.angle) }) };
+    Object.assign(this.shown, { x: of(x), y: of(y), text: of(text), textposition: of(side), marker });
+    return true;
   }
 }
 

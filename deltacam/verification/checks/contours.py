@@ -86,11 +86,15 @@ def closed(comparison: Comparison) -> Check:
 
 
 def _gap(evidence: Evidence, run: Run) -> float:
-    """How far the second half of a run stays from where the run comes to its contour, m."""
-    sheet, middle = evidence.sheet, (run.first + run.end) // 2
-    start = sheet[max(run.first - 1, run.begin) : run.first + 1]
-    start, way = (np.concatenate([line, line[-1:]]) for line in (start, sheet[middle : run.end + 1]))
-    return float(shapely.distance(shapely.LineString(start), shapely.LineString(way)))
+    """How far the second half of a run stays from where the run starts, m.
+
+    Where a lead-in comes before it, the cut starts somewhere on the way to its first tick, and the end of an overcut
+    lies beyond that tick.
+    """
+    led = run.begin < run.first
+    start = evidence.sheet[[run.first - led, run.first, run.first + led]]
+    way = evidence.sheet[(run.first + run.end) // 2 : run.end + 1]
+    return float(shapely.distance(shapely.LineString(start), shapely.LineString(np.concatenate([way, way[-1:]]))))
 
 
 def _away(evidence: Evidence, target: Target, run: Run) -> float:

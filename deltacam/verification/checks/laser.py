@@ -95,10 +95,17 @@ def pierce_before_cut(evidence: Evidence) -> Check:
     start = _stretch_starts(evidence)
     needed = evidence.program.process.pierce_time
     cuts = [run for run in evidence.runs if run.operation is Operation.CUT]
-    missing = np.array([needed - _pierced_for(evidence, run, start) for run in cuts])
-    ticks = np.array([run.first for run in cuts], dtype=np.int64)
+    missing = [needed - _pierced_for(evidence, run, start) for run in cuts]
+    ticks = [run.first for run in cuts]
+    for run in cuts:
+        # Behind a tab the laser comes on again.
+        for _, end in evidence.stretches(run, frozenset({BlockKind.TAB})):
+            others = np.flatnonzero(evidence.kind[end:] != KINDS.index(BlockKind.PIERCE))
+            missing.append(needed - float(others[0] if len(others) else 0) / evidence.rate)
+            ticks.append(end)
     limit = 0.5 / evidence.rate
-    return at_most(evidence, "pierce before every cut", missing * 1e3, limit * 1e3, "ms missing", ticks=ticks)
+    where = np.array(ticks, dtype=np.int64)
+    return at_most(evidence, "pierce before every cut", np.array(missing) * 1e3, limit * 1e3, "ms missing", ticks=where)
 
 
 def cut_after_pierce(evidence: Evidence) -> Check:

@@ -1,0 +1,218 @@
+"""Makes benchmarks/data/order_best.json: the best times known for the sheets of benchmarks/order.py.
+
+The problem is the same for all: every contour begins at one of its listed places, what is inside comes first, open
+lines before closed ones, from (0, 0) back to (0, 0), and the cost of a way is the estimated time of a rapid of
+delta-300 in whole 0.1 us. Three independent answers, and long runs of our own search; the least counts:
+
+- up to 14 contours an exact dynamic program over sets of contours (Held and Karp 1962) with places,
+- up to 350 contours OR-tools' routing library: a node for every place, of which one per contour is visited,
+- for more OR-tools over the contours alone, each held at the place that our search chose, then the best places for
+  that sequence.
+
+Needs `pip install ortools`, and takes about half an hour; with 0 SECONDS OR-tools is left out:
+
+    python -m benchmarks.order_best [SECONDS] [TRIES_PER_CONTOUR] [LEAST_CONTOURS]
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.sheets import SIZES, Sheet, sheets
+from deltacam.cutting.order import order, problem_of
+from deltacam.cutting.ordering.places import best_places
+from deltacam.cutting.ordering.problem import Problem
+from deltacam.robot.rapid import Rapids
+from deltacam.robot.reader import load_robot
+
+DATA = Path(__file__).parent / "data" / "order_best.json"
+EXACT = 14
+WHOLE = 350
+SEEDS = (101, 102)
+UNIT = 1e-7  # s
+NEVER = 10**9
+
+
+def cost_of(problem: Problem, places: list[int]) -> float:
+    """The time of the ways through places, s."""
+    rest = len(problem.begins) - 1
+    return float(problem.ways(np.array([rest, *places]), np.array([*places, rest])).sum())
+
+
+def keeps(problem: Problem, places: list[int]) -> bool:
+    """Whether every contour is there once, after all that lies inside it and after all of an earlier stage."""
+    cuts = problem.owner[places]
+    if len(cuts) != problem.count:
+        return False
+    position = np.argsort(cuts)
+    around = problem.rule.around[:-1]
+    later = np.append(position, len(cuts))[around] > position[:, None]
+    stages = np.diff(problem.stage[cuts])
+    return bool((np.sort(cuts) == np.arange(problem.count)).all() and later.all() and (stages >= 0).all())
+
+
+def matrix(problem: Problem, places: np.ndarray) -> np.ndarray:
+    """What the ways between places cost, whole units; those back to an earlier stage never pay."""
+    left, reached = (one.ravel() for one in np.meshgrid(places, places, indexing="ij"))
+    cost = np.rint(problem.ways(left, reached) / UNIT).astype(np.int64)
+    cuts, rest = problem.owner, problem.count
+    earlier = (
+        (problem.stage[cuts[reached]] < problem.stage[cuts[left]]) & (cuts[left] != rest) & (cuts[reached] != rest)
+    )
+    return np.where(earlier, cost + NEVER, cost).reshape(len(places), len(places))
+
+
+def exact(problem: Problem) -> list[int]:
+    """The best of all orders and places."""
+    count, rest, owner = problem.count, len(problem.begins) - 1, problem.owner[:-1]
+    cost = matrix(problem, np.arange(rest + 1)).astype(np.float64)
+    inside = np.zeros(count, dtype=np.int64)
+    for cut, row in enumerate(problem.rule.around[:-1].tolist()):
+        for outer in row:
+            if outer < count:
+                inside[outer] |= 1 << cut
+    best = np.full((1 << count, rest), np.inf)
+    came = np.full((1 << count, rest), -1, dtype=np.int32)
+    for place in np.flatnonzero(inside[owner] == 0).tolist():
+        best[1 << int(owner[place]), place] = cost[rest, place]
+    for done in range(1, 1 << count):
+        here = np.flatnonzero(np.isfinite(best[done]))
+        next_ = np.flatnonzero(((done >> owner) & 1 == 0) & ((inside[owner] & ~done) == 0))
+        if not len(here) or not len(next_):
+            continue
+        through = best[done, here][:, None] + cost[np.ix_(here, next_)]
+        least = through.argmin(axis=0)
+        found = through[least, np.arange(len(next_))]
+        into = done | (1 << owner[next_])
+        better = found < best[into, next_]
+        best[into[better], next_[better]] = found[better]
+        came[into[better], next_[better]] = here[least[better]]
+    done = (1 << count) - 1
+    place = int((best[done] + cost[:rest, rest]).argmin())
+    places = []
+    while place >= 0:
+        places.append(place)
+        done, place = done ^ (1 << int(owner[place])), int(came[done, place])
+    return places[::-1]
+
+
+def routed(problem: Problem, places: np.ndarray, seconds: float) -> list[int] | None:
+    """What OR-tools finds over these places, the rest of all last among them, with guided local search."""
+    from ortools.constraint_solver import pywrapcp, routing_enums_pb2
+
+    owner = problem.owner[places]
+    manager = pywrapcp.RoutingIndexManager(len(places), 1, len(places) - 1)
+    model = pywrapcp.RoutingModel(manager)
+    model.SetArcCostEvaluatorOfAllVehicles(model.RegisterTransitMatrix(matrix(problem, places).tolist()))
+    nodes: dict[int, list[int]] = {}
+    for node, cut in enumerate(owner[:-1].tolist()):
+        nodes.setdefault(cut, []).append(manager.NodeToIndex(node))
+    for group in nodes.values():
+        if len(group) > 1:
+            model.AddDisjunction(group, NEVER * 10, 1)
+    _keep_rule(model, problem, nodes)
+    how = pywrapcp.DefaultRoutingSearchParameters()
+    how.first_solution_strategy = routing_enums_pb2.FirstSolutionStrategy.PATH_CHEAPEST_ARC
+    how.local_search_metaheuristic = routing_enums_pb2.LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH
+    how.time_limit.FromMilliseconds(int(seconds * 1e3))
+    solution = model.SolveWithParameters(how)
+    if solution is None:
+        return None
+    index, found = model.Start(0), []
+    while not model.IsEnd(index := solution.Value(model.NextVar(index))):
+        found.append(int(places[manager.IndexToNode(index)]))
+    return found
+
+
+def _keep_rule(model: object, problem: Problem, nodes: dict[int, list[int]]) -> None:
+    """Tell OR-tools what comes before what: by how many places were passed."""
+    pairs = [
+        (cut, outer)
+        for cut, row in enumerate(problem.rule.around[:-1].tolist())
+        for outer in row
+        if outer < problem.count
+    ]
+    if not pairs:
+        return
+    model.AddConstantDimension(1, problem.count + 2, True, "passed")  # type: ignore[attr-defined]
+    passed = model.GetDimensionOrDie("passed")  # type: ignore[attr-defined]
+    for cut, outer in pairs:
+        for one in nodes[cut]:
+            for other in nodes[outer]:
+                model.solver().Add(passed.CumulVar(one) <= passed.CumulVar(other))  # type: ignore[attr-defined]
+
+
+def known(sheet: Sheet, cost: Rapids, seconds: float, tries: int, earlier: dict[str, float]) -> dict[str, Any]:
+    """What every solver finds for a sheet, and found in ``earlier`` runs."""
+    problem = problem_of(sheet.cuts, parents=sheet.parents, start=(0.0, 0.0), cost=cost, places=sheet.places)
+    found: dict[str, list[int]] = {}
+    for seed in SEEDS:
+        effort = tries * len(sheet.cuts)
+        ordered = order(
+            sheet.cuts,
+            parents=sheet.parents,
+            start=(0.0, 0.0),
+            cost=cost,
+            places=sheet.places,
+            seed=seed,
+            effort=effort,
+        )
+        first = problem.first[np.array(ordered.index)]
+        found[f"ours, seed {seed}, {effort} tries"] = [
+            int(base) + int(place or 0) for base, place in zip(first, ordered.place, strict=True)
+        ]
+    ours = min(found.values(), key=lambda places: cost_of(problem, places))
+    if problem.count <= EXACT:
+        found["exact"] = exact(problem)
+    elif seconds == 0.0:
+        pass
+    elif problem.count <= WHOLE:
+        answer = routed(problem, np.arange(len(problem.begins)), seconds)
+        if answer is not None:
+            found["or-tools"] = answer
+    else:
+        held = np.append(np.sort(ours), len(problem.begins) - 1)
+        answer = routed(problem, held, seconds)
+        if answer is not None:
+            found["or-tools, places held"] = best_places(problem, problem.owner[answer].tolist())
+    times = {name: cost_of(problem, places) for name, places in found.items() if keeps(problem, places)}
+    times = {**earlier, **{name: round(value, 9) for name, value in times.items()}}
+    return {
+        "best": min(times.values()),
+        "by": min(times, key=lambda name: times[name]),
+        "exact": "exact" in times,
+        "times": times,
+    }
+
+
+def main() -> None:
+    """Find the best times and store them, those of earlier runs included."""
+    import ortools
+
+    numbers = [float(argument) for argument in sys.argv[1:]]
+    seconds, tries, least = (*numbers, *(15.0, 30.0, 0.0)[len(numbers) :])
+    cost = Rapids(load_robot("delta-300"))
+    stored: dict[str, Any] = json.loads(DATA.read_text()) if DATA.exists() else {}
+    for sheet in sheets(tuple(size for size in SIZES if size >= least)):
+        started = time.perf_counter()
+        stored[sheet.name] = known(sheet, cost, seconds, int(tries), stored.get(sheet.name, {}).get("times", {}))
+        stored["provenance"] = {
+            "solver": f"OR-tools {ortools.__version__}, routing, PATH_CHEAPEST_ARC, GUIDED_LOCAL_SEARCH, "
+            f"{seconds:g} s for each sheet; exact dynamic program up to {EXACT} contours",
+            "problem": (__doc__ or "").split("\n\n")[1].replace("\n", " "),
+            "robot": "delta-300",
+            "script": "benchmarks/order_best.py",
+        }
+        DATA.parent.mkdir(exist_ok=True)
+        DATA.write_text(json.dumps(stored, indent=1) + "\n")
+        print(sheet.name, stored[sheet.name], f"{time.perf_counter() - started:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()
