@@ -42,6 +42,9 @@ CONTOUR_CHECKS: Final = (
 )
 """The names of the checks that need the drawing, to say so where there is none."""
 
+COMMON_EDGE_CHECKS: Final = ("parts come free", "shared edges first")
+"""The names of those that there are besides where outlines may share edges."""
+
 
 def verify(
     program: Program, *, drawing: Drawing | None, robot: Robot | None = None, process: Process | None = None
@@ -107,7 +110,8 @@ def _compared(evidence: Evidence, drawing: Drawing | None, findings: list[Findin
         return None
     if drawing is None:
         name = evidence.program.drawing.file
-        what = f"not checked without the drawing: {', '.join(CONTOUR_CHECKS)}"
+        names = CONTOUR_CHECKS + (COMMON_EDGE_CHECKS if evidence.program.process.common_edges else ())
+        what = f"not checked without the drawing: {', '.join(names)}"
         findings.append(Finding(what, hint=f"give the drawing: --drawing {name}", kind=UNCHECKED))
         return None
     return compare(evidence, drawing)

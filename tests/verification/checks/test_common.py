@@ -12,7 +12,7 @@ from deltacam.model import BlockKind, Lead, Process, Report, Search, Slower, Tab
 from deltacam.pipeline import Planned, plan
 from deltacam.robot.reader import load_robot
 from deltacam.verification.checks.table import OF_COMMON_EDGES
-from deltacam.verification.verify import verify
+from deltacam.verification.verify import COMMON_EDGE_CHECKS, verify
 from tests.damage import in_common
 from tests.nested import Box, drawn, rows
 
@@ -166,11 +166,13 @@ def test_the_last_cut_of_a_plate_left_out_is_found_in_a_grid() -> None:
 
 
 def test_the_checks_are_there_only_where_they_are_asked_for() -> None:
-    names = {"parts come free", "shared edges first"}
+    names = set(COMMON_EDGE_CHECKS)
     with_them = {one.name for one in planned(BETWEEN).report.checks}
     without = {one.name for one in planned(BETWEEN, common_edges=False).report.checks}
     assert len(OF_COMMON_EDGES) == len(names)
     assert with_them - without == names
+    (unchecked,) = verify(planned(BETWEEN).program, drawing=None).findings
+    assert all(name in unchecked.what for name in names)
 
 
 def test_where_nothing_is_shared_the_rows_are_those_of_today() -> None:
