@@ -291,7 +291,7 @@ def _findings(cuts: Sequence[Cut], found: Sequence[tuple[Approach, ...]], proces
     return tuple(findings)
 
 
-_ROOM: Final = "leave more room between the parts, or ask for shorter leads (--lead-in)"
+_ROOM: Final = "leave more room between the parts, or lower the feed (--feed)"
 
 
 def _at(cut: Cut) -> str:
