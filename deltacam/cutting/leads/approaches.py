@@ -7,8 +7,9 @@ its middle on half a circle.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -135,6 +136,7 @@ def approaches(
     waste: Waste,
     able: Callable[[Array], Ability],
     tick: float,
+    clear: Mapping[int, Sequence[Curve]] = MappingProxyType({}),
 ) -> tuple[list[tuple[Approach, ...]], tuple[Finding, ...]]:
     """The ways in which each cut may begin and end, the best leads only, and what a person should know of them.
 
@@ -145,16 +147,19 @@ def approaches(
         waste: where they may lie.
         able: what the tool can do at places (N, 2) m.
         tick: of the controller, s; an overcut is longer by the way of one.
+        clear: by number of contour, edges on which its cut should not begin; it does where there is nothing else.
 
     Returns:
-        for every cut its approaches, none for what is open or engraved.
+        for every cut its approaches, none for what is open or engraved, or may begin anywhere without leads.
     """
     closed = [k for k, cut in enumerate(cuts) if cut.curve.closed and cut.operation is Operation.CUT]
     found: list[tuple[Approach, ...]] = [() for _ in cuts]
-    if not closed or not has_leads(process):
+    if not has_leads(process):
+        closed = [k for k in closed if cuts[k].contour in clear]
+    if not closed:
         return found, ()
     beyond = [_overcut(process, cuts[index], tick) for index in closed]
-    rows = places(cuts, closed, contours, process=process, beyond=beyond, count=PLACES)
+    rows = places(cuts, closed, contours, process=process, beyond=beyond, count=PLACES, clear=clear)
     feed = np.array([cut.feed or process.feed for cut in cuts])[rows.cut]
     begin = _asked(process.lead_in, feed, rows.begin, rows.begin.ends.backwards(), able, process)
     end = _asked(process.lead_out, feed, rows.end, rows.end.ends, able, process)
@@ -186,6 +191,8 @@ def _overcut(process: Process, cut: Cut, tick: float) -> float:
 
     Also where no overcut is asked for: leads leave the contour on a blend each, and these must not leave a bridge.
     """
+    if not has_leads(process):
+        return 0.0
     return min(process.overcut + (cut.feed or process.feed) * tick, curves.length(cut.curve))
 
 
