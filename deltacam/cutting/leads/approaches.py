@@ -64,6 +64,7 @@ PLACES: Final = 8
 REACHED: Final = 0.97
 """Part of the speed, as it is foretold, from which on it counts as reached."""
 
+_BRIDGE: Final = 0.2e-3  # m, longer than the blends at the ends of leads
 _AS_FAST: Final = 0.95  # of the highest speed, for a place that the order may choose
 _ALIKE: Final = 0.01  # shares that differ by less are as good
 _BLENDED: Final = 0.7  # of the tolerance, for the blend between a lead and the contour
@@ -193,7 +194,8 @@ def _overcut(process: Process, cut: Cut, tick: float) -> float:
     """
     if not has_leads(process):
         return 0.0
-    return min(process.overcut + (cut.feed or process.feed) * tick, curves.length(cut.curve))
+    step = (cut.feed or process.feed) * tick
+    return min(process.overcut + (step if process.overcut else min(step, _BRIDGE)), curves.length(cut.curve))
 
 
 def _asked(
