@@ -64,6 +64,8 @@ PLACES: Final = 8
 REACHED: Final = 0.97
 """Part of the speed, as it is foretold, from which on it counts as reached."""
 
+_BRIDGE: Final = 0.2e-3  # m, longer than the blends at the ends of leads
+_AS_FAST: Final = 0.95  # of the highest speed, for a place that the order may choose
 _ALIKE: Final = 0.01  # shares that differ by less are as good
 _BLENDED: Final = 0.7  # of the tolerance, for the blend between a lead and the contour
 _NAMED: Final = 5
@@ -165,7 +167,7 @@ def approaches(
     into, out = _from_the_middle(_tried(begin, waste), begin, rows, cuts, waste), _tried(end, waste)
     for rows_of_cut in np.split(np.arange(len(rows.cut)), np.flatnonzero(np.diff(rows.cut)) + 1):
         index = int(rows.cut[rows_of_cut[0]])
-        kept = rows_of_cut[_best(into.share[rows_of_cut], out.share[rows_of_cut])]
+        kept = rows_of_cut[_best((into.share * begin.speed)[rows_of_cut], out.share[rows_of_cut])]
         found[index] = tuple(_approach(rows, into, out, row) for row in kept.tolist())
     return found, _findings(cuts, found, process)
 
@@ -192,7 +194,8 @@ def _overcut(process: Process, cut: Cut, tick: float) -> float:
     """
     if not has_leads(process):
         return 0.0
-    return min(process.overcut + (cut.feed or process.feed) * tick, curves.length(cut.curve))
+    step = (cut.feed or process.feed) * tick
+    return min(process.overcut + (step if process.overcut else min(step, _BRIDGE)), curves.length(cut.curve))
 
 
 def _asked(
@@ -204,6 +207,8 @@ def _asked(
     full = sizes.wanted(lead, speed, can, deviation, spots.bend)
     if lead.length is not None or lead.radius is not None or lead.shape == "line":
         speed = np.minimum(speed, sizes.arrival(full, can, deviation, spots.bend, spots.ahead))
+    else:
+        full = sizes.grown(full, speed, can, deviation, spots.bend, spots.ahead)
     return _Asked(ends, spots, can, np.maximum(speed, 1e-6), full, deviation)
 
 
@@ -255,8 +260,8 @@ def _inscribed(curve: Curve) -> float:
 
 
 def _best(into: Array, out: Array) -> BoolArray:
-    """Which places of a cut have the best lead-ins, and of these the best lead-outs."""
-    fastest = into >= min(into.max(), REACHED) - _ALIKE
+    """At which places of a cut the tool comes fastest, (N,) m/s, and of these those with the best lead-outs."""
+    fastest = into >= _AS_FAST * into.max()
     return np.asarray(fastest & (out >= min(out[fastest].max(), REACHED) - _ALIKE))
 
 
