@@ -182,7 +182,8 @@ def known(sheet: Sheet, cost: Rapids, seconds: float, tries: int, earlier: dict[
         if answer is not None:
             found["or-tools, places held"] = best_places(problem, problem.owner[answer].tolist())
     times = {name: cost_of(problem, places) for name, places in found.items() if keeps(problem, places)}
-    times = {**earlier, **{name: round(value, 9) for name, value in times.items()}}
+    times = {name: round(value, 9) for name, value in times.items()}
+    times = {**earlier, **{name: min(value, earlier.get(name, value)) for name, value in times.items()}}
     return {
         "best": min(times.values()),
         "by": min(times, key=lambda name: times[name]),

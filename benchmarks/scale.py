@@ -152,14 +152,14 @@ def measure(drawing: str, process: str, folder: str) -> None:
                 Path("/proc/self/clear_refs").write_text("5")
         current, since = stage, time.perf_counter()
 
-    arrange = pipeline.order.order
+    arrange = pipeline.ways
 
     def arranged(*arguments: object, **options: object) -> object:
         found = arrange(*arguments, **options)
         progress("motion", 0, 1)  # which says so itself only when all paths are made
         return found
 
-    pipeline.order.order = arranged
+    pipeline.ways = arranged
     planned, _ = pipeline.plan_to_folder(drawing, folder, robot=ROBOT, process=process, progress=progress)
     summary = planned.report.summary
     found = {

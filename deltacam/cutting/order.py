@@ -23,11 +23,8 @@ from deltacam.cutting.precedence import Precedence
 from deltacam.model import Cut, Heat, IntArray, Operation
 
 _FINER: Final = 6  # rounds in which the places of a cut that may begin anywhere come nearer to each other
-_TRY_TIME: Final = 1e-3  # s, of one try, and of looking at one cut before, on the machine of benchmarks/README.md
-_TRIES_PER_CUT: Final = 5
-_TRIES_PER_CUT_OF_MANY: Final = 1.25
-_MANY: Final = 700
-_FEWEST_TRIES: Final = 100
+_TRY_TIME: Final = 1e-3  # s, of one try, and of what is done for one cut before, on the machine of benchmarks/README.md
+_EFFORT: Final = ((0, 50, 170, 10_000, 100_000), (200, 300, 3_250, 13_000, 103_000))  # tries by contours
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,8 +48,7 @@ class Ordered:
 
 def default_effort(contours: int) -> int:
     """How many tries are made where nobody says."""
-    more = max(0, contours - _MANY)
-    return max(_FEWEST_TRIES, round(_TRIES_PER_CUT * (contours - more) + _TRIES_PER_CUT_OF_MANY * more))
+    return round(float(np.interp(contours, *_EFFORT)))
 
 
 def effort_for(seconds: float, contours: int) -> int:

@@ -80,17 +80,19 @@ class Rapids:
         first_x, first_y = self._first_cell.tolist()
         per_turn, first_turn, most, near = _TURNS / pi, self._turn, _SIDE - 1, _NEAR_END
 
-        def cell(x: float, y: float) -> int:
-            column, row = int(x * xx + y * yx + first_x), int(x * xy + y * yy + first_y)
-            column = 0 if column < 0 else most if column > most else column
-            return (column * _SIDE + (0 if row < 0 else most if row > most else row)) * _TURNS
-
         def time(x: float, y: float, to_x: float, to_y: float) -> float:
             dx, dy = to_x - x, to_y - y
             turn = int(atan2(dy, dx) * per_turn + first_turn) % _TURNS
-            v, a, j = table[cell(x + near * dx, y + near * dy) + turn]
-            v_last, a_last, j_last = table[cell(to_x - near * dx, to_y - near * dy) + turn]
-            middle = table[cell(x + 0.5 * dx, y + 0.5 * dy) + turn][0]
+            # Where in the table the way begins, and which part of the table it crosses.
+            column, row = x * xx + y * yx + first_x, x * xy + y * yy + first_y
+            columns, rows = dx * xx + dy * yx, dx * xy + dy * yy
+            at = []
+            for share in (near, 0.5, 1.0 - near):
+                one, other = int(column + share * columns), int(row + share * rows)
+                one = 0 if one < 0 else most if one > most else one
+                other = 0 if other < 0 else most if other > most else other
+                at.append(table[(one * _SIDE + other) * _TURNS + turn])
+            (v, a, j), (middle, _, _), (v_last, a_last, j_last) = at
             return _time(hypot(dx, dy), 0.25 * (v + v_last) + 0.5 * middle, 0.5 * (a + a_last), 0.5 * (j + j_last))
 
         return time

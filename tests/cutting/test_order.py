@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from deltacam.cutting import order as module
+from deltacam.cutting.beginnings import Place
 from deltacam.geometry import curve as curves
-from deltacam.model import Curve, Cut, Operation
+from deltacam.model import Curve, Cut, Heat, Operation
 
 
 def order(cuts, **options):
@@ -145,3 +146,86 @@ def test_six_open_lines_are_near_the_best_order_of_all(seed: int) -> None:
 
 def test_no_cuts_need_no_order() -> None:
     assert order([], parents={}, start=(0.0, 0.0)) == ()
+
+
+def spots(count: int, seed: int) -> list[list[Place]]:
+    """Three places of every cut, left elsewhere than they are come to."""
+    rng = np.random.default_rng(seed)
+    return [[Place(*map(tuple, pair)) for pair in rng.uniform(-0.1, 0.1, (3, 2, 2)).tolist()] for _ in range(count)]
+
+
+def test_cuts_with_a_list_begin_at_one_of_its_places_and_are_handed_out_as_they_were() -> None:
+    cuts = [ring(n, 0.01 * n, 0.0) for n in range(1, 6)]
+    places = spots(5, 0)
+    found = module.order(cuts, parents=dict.fromkeys(range(1, 6)), start=(0.0, 0.0), places=places)
+    assert all(cut is cuts[index] for cut, index in zip(found.cuts, found.index, strict=True))
+    chosen = [places[index][place] for index, place in zip(found.index, found.place, strict=True)]
+    ways = np.array([[0.0, 0.0], *(one.end for one in chosen)]) - [*(one.begin for one in chosen), [0.0, 0.0]]
+    assert found.time == pytest.approx(float(np.hypot(*ways.T).sum()))
+    assert found.wait == (0.0,) * 5
+
+
+def test_the_order_with_lists_is_the_best_of_all() -> None:
+    cuts, parents = [ring(n, 0.0, 0.0) for n in range(1, 5)], {1: 3, 2: None, 3: None, 4: None}
+    for seed in range(4):
+        places = spots(4, seed)
+        found = module.order(cuts, parents=parents, start=(0.0, 0.0), places=places)
+        best = np.inf
+        for sequence in itertools.permutations(range(4)):
+            if sequence.index(0) > sequence.index(2):
+                continue
+            for chosen in itertools.product(*(places[cut] for cut in sequence)):
+                left = np.array([(0.0, 0.0), *(one.end for one in chosen)])
+                reached = np.array([*(one.begin for one in chosen), (0.0, 0.0)])
+                best = min(best, float(np.hypot(*(reached - left).T).sum()))
+        assert found.time == pytest.approx(best)
+
+
+def test_only_some_cuts_need_a_list() -> None:
+    cuts = [ring(1, 0.05, 0.0, 0.01), ring(2, 0.1, 0.0, 0.01), line(3, (0.02, 0.0), (0.03, 0.0), Operation.CUT)]
+    places = [None, [Place((0.1, 0.02), (0.1, 0.03))], None]
+    found = module.order(cuts, parents=dict.fromkeys((1, 2, 3)), start=(0.0, 0.0), places=places)
+    assert dict(zip(found.index, found.place, strict=True)) == {0: None, 1: 0, 2: None}
+    assert found.cuts[found.index.index(1)] is cuts[1]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_contours_of_a_part_stay_together_where_that_is_asked(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cuts, parents = [], dict[int, int | None]()
+    for part in range(6):
+        parents[part] = None
+        cuts.append(ring(part, *rng.uniform(-0.1, 0.1, 2), radius=0.02))
+    for hole in range(6, 40):
+        parents[hole] = int(rng.integers(6))
+        cuts.append(ring(hole, *rng.uniform(-0.1, 0.1, 2)))  # all over the sheet, so that it does not pay to stay
+    free = module.order(cuts, parents=parents, start=(0.0, 0.0))
+    kept = module.order(cuts, parents=parents, start=(0.0, 0.0), together=True)
+    of_part = [parents[cut.contour] if cut.contour >= 6 else cut.contour for cut in kept.cuts]
+    assert len([part for part, _ in itertools.groupby(of_part)]) == 6
+    assert free.time < kept.time
+
+
+def test_a_cut_near_the_end_of_the_one_before_waits_for_what_the_way_does_not_take() -> None:
+    heat = Heat(distance=0.05, time=1.0)
+    cuts = [ring(1, 0.0, 0.0), ring(2, 0.01, 0.0)]
+    found = module.order(cuts, parents={1: None, 2: None}, start=(0.0, 0.0), heat=heat)
+    first, second = (cut.curve.points[0] for cut in found.cuts)
+    assert found.wait == (0.0, pytest.approx(1.0 - np.hypot(*(second - first))))
+    far = module.order([cuts[0], ring(2, 0.1, 0.0)], parents={1: None, 2: None}, start=(0.0, 0.0), heat=heat)
+    assert far.wait == (0.0, 0.0)
+
+
+def test_a_contour_between_two_cuts_that_is_not_cut_itself_does_not_break_the_rule() -> None:
+    # 1 in 2 in 3: 2 is engraved, which comes first; 1 must still come before 3, which is nearer.
+    cuts = [ring(1, 0.1, 0.0), replace(ring(2, 0.1, 0.0, 0.02), operation=Operation.ENGRAVE), ring(3, 0.06, 0.0, 0.06)]
+    ordered = order(cuts, parents={1: 2, 2: 3, 3: None}, start=(0.0, 0.0))
+    assert [cut.contour for cut in ordered] == [2, 1, 3]
+
+
+def test_more_time_means_more_tries_and_few_contours_need_few() -> None:
+    assert module.effort_for(0.0, 100) == 0
+    assert module.effort_for(20.0, 100) > module.effort_for(10.0, 100) > 0
+    efforts = [module.default_effort(count) for count in (1, 10, 50, 100, 1000, 20_000)]
+    assert efforts == sorted(efforts)
+    assert efforts[2] <= 300

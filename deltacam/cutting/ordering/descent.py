@@ -16,7 +16,7 @@ GAIN: Final = 1e-9
 """s; what saves less is rounding."""
 
 _RUN: Final = 3  # cuts of a stretch that is moved beside a near cut
-_SECOND: Final = 5  # near cuts that are tried for a second new step
+_SECOND: Final = 3  # near cuts that are tried for a second new step
 
 
 class Change(NamedTuple):
@@ -177,7 +177,7 @@ class Descent:
         return Change(gain, (sequence[p - 1], sequence[p], sequence[r - 1], sequence[r - self._size]))
 
     def _moved_backwards(self, firsts: range, ends: range, to: int) -> Change | None:
-        """Turn a short stretch from one of ``firsts`` to one of ``ends``, and put it into the step ``to``, if it saves."""
+        """Turn a short stretch, from one of ``firsts`` to one of ``ends``, and put it into the step ``to``."""
         way, size = self._way, self._size
         sequence, rows, place, mirror = way.sequence, way.rows, way.place, way.mirror
         ahead, behind = place[sequence[to - 1]], place[sequence[to - size]]
@@ -187,6 +187,8 @@ class Descent:
                 if i < 1 or j > size or i <= to <= j:
                     continue
                 first, last = place[sequence[i]], place[sequence[j - 1]]
+                if first == last == mirror[first]:
+                    continue  # it is the same either way
                 before, after = rows[place[sequence[i - 1]]], place[sequence[j - size]]
                 gain = now + before[first] + rows[last][after]
                 gain -= row[mirror[last]] + rows[mirror[first]][behind] + before[after]

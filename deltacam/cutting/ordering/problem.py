@@ -109,27 +109,26 @@ class Problem:
         equal = np.flatnonzero(off == np.repeat(least, counts))
         mirror[lopsided] = other[equal[np.searchsorted(equal, start)]]
         itself = np.arange(len(mirror))
-        return np.where(mirror[mirror] == itself, mirror, itself), bool((least < _SAME).all())
+        mirror = np.where(mirror[mirror] == itself, mirror, itself)
+        off = distance(self.begins[mirror], self.ends)[:-1]
+        return mirror, bool(off.max() < _SAME)
 
 
 class Lookup:
     """What single ways cost, found once: ``rows[left][reached]``, by places."""
 
     def __init__(self, problem: Problem) -> None:
-        owner = problem.owner.tolist()
-        fenced = bool(len(np.unique(problem.stage)) > 1 or len(np.unique(problem.part)) > 1)
-        begins, ends = problem.begins.tolist(), problem.ends.tolist()
-        one = _one(problem)
+        begins, ends, one = problem.begins.tolist(), problem.ends.tolist(), _one(problem)
+        more = _rules(problem)
+        if more is None:
 
-        def way(left: int, reached: int) -> float:
-            found = one(*ends[left], *begins[reached])
-            if heat is not None and found < heat.time and rest not in {left, reached}:
-                found = heat.time if dist(ends[left], begins[reached]) < heat.distance else found
-            if fenced:
-                found += fence(owner[left], owner[reached])
-            return found
+            def way(left: int, reached: int) -> float:
+                return one(*ends[left], *begins[reached])
+        else:
 
-        heat, rest, fence = problem.heat, len(begins) - 1, _fence(problem)
+            def way(left: int, reached: int) -> float:
+                return more(left, reached, one(*ends[left], *begins[reached]))
+
         self.rows: list[dict[int, float]] = [_Row(way, place) for place in range(len(begins))]
 
     def forget(self, *, above: int) -> None:
@@ -167,14 +166,26 @@ def _one(problem: Problem) -> Callable[[float, float, float, float], float]:
     return asked
 
 
-def _fence(problem: Problem) -> Callable[[int, int], float]:
-    """`Problem.fences` for two cuts."""
-    stage, part, rest = problem.stage.tolist(), problem.part.tolist(), problem.count
+def _rules(problem: Problem) -> Callable[[int, int, float], float] | None:
+    """What a way costs with the rules on stages, parts and heat, given its places and its cost without; None for none.
 
-    def fence(left: int, reached: int) -> float:
-        steps = abs(stage[reached] - (0 if left == rest else stage[left]))
+    The same as `Problem.ways` and `Problem.fences` for a single way.
+    """
+    heat, rest = problem.heat, problem.count
+    stage: list[int] = problem.stage.tolist()
+    part: list[int] = problem.part.tolist()
+    if heat is None and max(stage) == min(stage) == 0 and len(set(part[:-1])) < 2:
+        return None
+    owner: list[int] = problem.owner.tolist()
+    begins, ends = problem.begins.tolist(), problem.ends.tolist()
+
+    def cost(left: int, reached: int, alone: float) -> float:
+        one, other = owner[left], owner[reached]
+        if heat is not None and alone < heat.time and rest not in {one, other}:
+            alone = heat.time if dist(ends[left], begins[reached]) < heat.distance else alone
+        steps = abs(stage[other] - (0 if one == rest else stage[one]))
         if steps:
-            return STAGE * steps
-        return PART if left != rest and reached != rest and part[left] != part[reached] else 0.0
+            return alone + STAGE * steps
+        return alone + PART if rest not in {one, other} and part[one] != part[other] else alone
 
-    return fence
+    return cost

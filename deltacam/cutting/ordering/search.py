@@ -20,7 +20,9 @@ from deltacam.cutting.ordering.places import best_places
 from deltacam.cutting.ordering.problem import Lookup, Problem
 from deltacam.cutting.ordering.way import Way
 
-_STRETCH: Final = 10  # the most cuts of a stretch that is swapped
+_SHORT: Final = 10  # the most cuts of a stretch that is swapped
+_LONG: Final = 50  # the same in other tries
+_OFTEN_SHORT: Final = 0.7  # long ones move parts with all their holes
 _LONGEST: Final = 1000  # cuts that one change moves while trying
 _MOVED: Final = 0.3  # of the cuts beside a swap begin anywhere
 _FOLLOWING: Final = 8  # the most cuts behind one of them that follow suit
@@ -64,9 +66,10 @@ class _Trial:
     def run(self) -> None:
         """Make one try."""
         way, random, size = self._way, self._random, len(self._way.sequence)
+        longest = _SHORT if random() < _OFTEN_SHORT else _LONG
         p = 1 + int(random() * (size - 2))
-        q = p + 1 + int(random() * min(_STRETCH, size - 1 - p))
-        r = q + 1 + int(random() * min(_STRETCH, size - q))
+        q = p + 1 + int(random() * min(longest, size - 1 - p))
+        r = q + 1 + int(random() * min(longest, size - q))
         if not way.may_swap(p, q, r):
             return
         change = self._descent.swap(p, q, r)

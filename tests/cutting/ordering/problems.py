@@ -1,5 +1,7 @@
 """Random problems, and what is true of an order, found the long way."""
 
+from itertools import groupby
+
 import numpy as np
 
 from deltacam.cutting.ordering.problem import Problem, distance
@@ -53,9 +55,7 @@ def keeps(one: Problem, cuts: list[int]) -> bool:
     """Whether every cut is there once, stages follow each other, parts stay together and the rule is kept."""
     position = {cut: at for at, cut in enumerate(cuts)}
     stages, parts = one.stage[cuts].tolist(), one.part[cuts].tolist()
-    blocks = [
-        pair for at, pair in enumerate(zip(stages, parts, strict=True)) if at == 0 or pair != last(stages, parts, at)
-    ]
+    blocks = [block for block, _ in groupby(zip(stages, parts, strict=True))]
     return (
         sorted(cuts) == list(range(one.count))
         and stages == sorted(stages)
@@ -66,7 +66,3 @@ def keeps(one: Problem, cuts: list[int]) -> bool:
             for outer in row
         )
     )
-
-
-def last(stages: list[int], parts: list[int], at: int) -> tuple[int, int]:
-    return stages[at - 1], parts[at - 1]

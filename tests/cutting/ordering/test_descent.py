@@ -1,5 +1,7 @@
 """Changes of an order save what they claim, keep to the rule, and can be taken back."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -23,7 +25,7 @@ KINDS = {
 def ways(one: Problem) -> tuple[Way, Descent]:
     way = Way(one, Lookup(one), first_order(one))
     bounds = one.first.tolist()
-    places = [range(low, high) for low, high in zip(bounds[:-1], bounds[1:], strict=True)]
+    places = [range(low, high) for low, high in pairwise(bounds)]
     return way, Descent(way, near_cuts(one), places, one.count)
 
 
@@ -96,7 +98,7 @@ def test_what_a_turned_stretch_costs_inside_is_told() -> None:
 
     def inside() -> float:
         places = [way.place[cut] for cut in way.sequence[3:9]]
-        return sum(way.rows[left][reached] for left, reached in zip(places[:-1], places[1:], strict=True))
+        return sum(way.rows[left][reached] for left, reached in pairwise(places))
 
     before, more = inside(), way.turned_inside(3, 9)
     way.turn(3, 9)
