@@ -39,6 +39,15 @@ def made_again(program: Program, contour: int) -> Program:
     return together(program, [*todo, todo[_of(todo, contour)[-1]]])
 
 
+def made_partly_again(program: Program, contour: int, place: tuple[float, float]) -> Program:
+    """What the last cut of a contour does within 4 mm of a place, (x, y) m, is done again at the end."""
+    todo = jobs(program)
+    *before, cut = todo[_of(todo, contour)[-1]]
+    points = program.robot.forward(cut.q)
+    way = replace(cut, q=along(program, points[np.hypot(*(points[:, :2] - place).T) < 4e-3], program.process.feed))
+    return together(program, [*todo, (*(_moved(stretch, way.q[0]) for stretch in before), way)])
+
+
 def begun_late(program: Program, contour: int) -> Program:
     """The last cut of a contour begins 0.4 mm late."""
     return _with_way(program, contour, lambda points: points[_distance(points) >= 0.4e-3])

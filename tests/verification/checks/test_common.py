@@ -113,6 +113,15 @@ def test_a_tab_is_never_on_a_shared_edge() -> None:
     assert any("without leads, loops and tabs" in one.what for one in found.report.findings)
 
 
+def test_a_closed_cut_begins_off_the_edge_that_it_shares_even_where_that_is_the_longest() -> None:
+    found = planned(((0.0, 0.0, 9.0, 12.0), (9.15, 0.0, 9.0, 12.0)), start="edge")
+    assert failed(found.report) == set()
+    pierce = next(one for one in found.program.blocks if one.kind is BlockKind.PIERCE)
+    x = found.program.robot.forward(found.program.q[[pierce.first]])[0, 0] - found.program.placement.x
+    assert pierce.contour == 1
+    assert abs(x - 9.075e-3) > 0.3e-3
+
+
 def test_a_program_that_goes_on_after_a_stop_relies_on_what_was_cut_before() -> None:
     order = order_of(planned())
     found = planned(from_contour=order[5])
@@ -155,6 +164,15 @@ def test_a_bridge_in_a_shared_edge_holds_the_plate_that_has_no_other() -> None:
     where = found.program.placement
     changed = in_common.bridged(found.program, 1, (where.x + 14.075e-3, where.y + 5e-3))
     assert {"uncut length", "parts come free"} <= failed(verify(changed, drawing=found.drawing))
+
+
+def test_an_edge_that_serves_two_is_cut_once_all_the_same() -> None:
+    found = planned(BETWEEN)
+    where = found.program.placement
+    again = in_common.made_partly_again(found.program, 1, (where.x + 14.075e-3, where.y + 4.5e-3))
+    check = next(one for one in verify(again, drawing=found.drawing).checks if one.name == "material cut twice")
+    assert not check.passed
+    assert check.worst == pytest.approx(8.0, abs=1.5)
 
 
 def test_the_last_cut_of_a_plate_left_out_is_found_in_a_grid() -> None:
