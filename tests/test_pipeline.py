@@ -208,3 +208,11 @@ def test_killing_the_planner_leaves_no_program_or_a_whole_one(drone: Planned, tm
     program = Outputs.of("drone-top-onshape.dxf", tmp_path).program
     assert not program.exists() or program.read_bytes() == drone.content
     assert [path.name for path in tmp_path.glob("*.csv")] == [program.name] * program.exists()
+
+
+def test_a_frame_goes_around_the_leads_too(drone: Planned) -> None:
+    frame = plan(DXF / "drone-top-onshape.dxf", unit="mm", mode=Mode.FRAME)
+    inside, around = (planned.program.robot.forward(planned.program.q)[:, :2] for planned in (drone, frame))
+    on = np.isin([drone.program.blocks[index].kind for index in drone.program.block], ["lead_in", "cut", "lead_out"])
+    assert (inside[on].min(axis=0) > around.min(axis=0) - 50e-6).all()
+    assert (inside[on].max(axis=0) < around.max(axis=0) + 50e-6).all()
