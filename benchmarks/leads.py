@@ -379,14 +379,18 @@ def cost(counts: tuple[int, ...]) -> Iterator[tuple[int, float]]:
     robot = robot_of("irb360-1600")
     process: Process = replace(load_process("steel-1mm-fibre"), lead_in=Lead("arc"), lead_out=Lead("arc"))
     where = Placement(0.0, 0.0, 0.0, robot.workspace.sheet_z)
+    chance = np.random.default_rng(1)
+    drawn = [_placed(KINDS[index % 6], 7.0, (0.0, 0.0), chance).vertices for index in range(60)]
+    shapes = [Contour(1, Curve(points=1e-3 * one[:, :2], bulges=one[:, 2]), "CUT", ("0",), 0, None) for one in drawn]
+    paths = [kerf.offset([one], kerf=process.kerf).cuts[0] for one in shapes]
     for count in counts:
-        chance, across = np.random.default_rng(count), int(np.ceil(np.sqrt(count)))
-        contours = []
+        across = int(np.ceil(np.sqrt(count)))
+        contours, cuts = [], []
         for number in range(1, count + 1):
-            own = _placed(KINDS[number % 6], 7.0, (10.0 * (number % across), 10.0 * (number // across)), chance)
-            curve = Curve(points=1e-3 * (own.vertices[:, :2] - 5.0 * across), bulges=own.vertices[:, 2])
-            contours.append(Contour(number, curve, "CUT", ("0",), 0, None))
-        cuts = kerf.offset(contours, kerf=process.kerf).cuts
+            shift = 0.01 * (number % across - 0.5 * across), 0.01 * (number // across - 0.5 * across)
+            own, path = shapes[number % 60], paths[number % 60]
+            contours.append(replace(own, number=number, curve=curves.transform(own.curve, shift=shift)))
+            cuts.append(replace(path, contour=number, curve=curves.transform(path.curve, shift=shift)))
         reach = Reach(robot, where)
         start = time.perf_counter()
         waste = Waste(contours, kerf=process.kerf, is_allowed=reach.is_allowed)

@@ -165,10 +165,11 @@ def approaches(
     begin = _asked(process.lead_in, feed, rows.begin, rows.begin.ends.backwards(), able, process)
     end = _asked(process.lead_out, feed, rows.end, rows.end.ends, able, process)
     into, out = _from_the_middle(_tried(begin, waste), begin, rows, cuts, waste), _tried(end, waste)
-    for rows_of_cut in np.split(np.arange(len(rows.cut)), np.flatnonzero(np.diff(rows.cut)) + 1):
-        index = int(rows.cut[rows_of_cut[0]])
-        kept = rows_of_cut[_best((into.share * begin.speed)[rows_of_cut], out.share[rows_of_cut])]
-        found[index] = tuple(_approach(rows, into, out, row) for row in kept.tolist())
+    of_cuts = np.split(np.arange(len(rows.cut)), np.flatnonzero(np.diff(rows.cut)) + 1)
+    arrival = into.share * begin.speed
+    kept = np.concatenate([own[_best(arrival[own], out.share[own])] for own in of_cuts])
+    for index, one in zip(rows.cut[kept].tolist(), _chosen(rows, into, out, kept), strict=True):
+        found[index] += (one,)
     return found, _findings(cuts, found, process)
 
 
@@ -265,14 +266,17 @@ def _best(into: Array, out: Array) -> BoolArray:
     return np.asarray(fastest & (out >= min(out[fastest].max(), REACHED) - _ALIKE))
 
 
-def _approach(rows: Places, into: Tried, out: Tried, row: int) -> Approach:
-    return Approach(
-        segment=int(rows.segment[row]),
-        distance=float(rows.distance[row]),
-        lead_in=shapes.lead_in(rows.begin.ends, into.size, row) if into.share[row] else None,
-        lead_out=shapes.lead_out(rows.end.ends, out.size, row) if out.share[row] else None,
-        share=float(into.share[row]),
-    )
+def _chosen(rows: Places, into: Tried, out: Tried, kept: IntArray) -> list[Approach]:
+    """The approaches of some rows."""
+    lead_ins = shapes.lead_ins(rows.begin.ends.chosen(kept), into.size.chosen(kept))
+    lead_outs = shapes.lead_outs(rows.end.ends.chosen(kept), out.size.chosen(kept))
+    share = into.share[kept]
+    return [
+        Approach(*row)
+        for row in zip(
+            rows.segment[kept].tolist(), rows.distance[kept].tolist(), lead_ins, lead_outs, share.tolist(), strict=True
+        )
+    ]
 
 
 def _findings(cuts: Sequence[Cut], found: Sequence[tuple[Approach, ...]], process: Process) -> tuple[Finding, ...]:
