@@ -290,12 +290,14 @@ def _findings(cuts: Sequence[Cut], found: Sequence[tuple[Approach, ...]], proces
     if some:
         names = ", ".join(f"contour {cut.contour} at {100.0 * share:.0f} %" for share, cut in some[:_NAMED])
         more = f" and {len(some) - _NAMED} more" if len(some) > _NAMED else ""
-        what = f"{len(some)} lead-ins have no room to reach the speed of the cut, which begins slower: {names}{more}"
+        count = "1 lead-in has" if len(some) == 1 else f"{len(some)} lead-ins have"
+        what = f"{count} no room to reach the speed of the cut, which begins slower: {names}{more}"
         findings.append(Finding(what, where=some[0][1].where, hint=_ROOM, kind="lead"))
     if none:
         places = ", ".join(f"contour {cut.contour} at {_at(cut)}" for cut in none[:_NAMED])
         more = f" and {len(none) - _NAMED} more" if len(none) > _NAMED else ""
-        what = f"{len(none)} cuts are pierced on the contour, where no lead-in has room: {places}{more}"
+        count = "1 cut is" if len(none) == 1 else f"{len(none)} cuts are"
+        what = f"{count} pierced on the contour, where no lead-in has room: {places}{more}"
         findings.append(Finding(what, where=none[0].where, hint=_ROOM, kind="lead"))
     return tuple(findings)
 
