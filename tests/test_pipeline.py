@@ -80,7 +80,7 @@ def test_another_judge_agrees(name: str, tmp_path: Path) -> None:
         runs = [sheet[b.first : b.last + 2] for b in blocks]
         assert shapely.distance(shapely.points(np.concatenate(runs)), edge).max() <= program.process.tolerance + 1e-6
         swept = shapely.union_all([shapely.LineString(run) for run in runs])
-        led = shapely.union_all([shapely.LineString(sheet[b.first - 1 : b.last + 2]) for b in blocks])  # a lead's last row
+        led = shapely.union_all([shapely.LineString(sheet[b.first - 1 : b.last + 2]) for b in blocks])
         assert edge.difference(led.buffer(60e-6)).length < 1e-6
         assert 0.98 <= swept.length / edge.length <= 1.05
 
