@@ -40,6 +40,9 @@ PER_SHEET: Final = 10
 REACHED: Final = 0.95
 """Part of the speed of the flying lap, at the first ticks, from which on it counts as reached."""
 
+ALMOST: Final = 0.98
+"""The same, more strictly."""
+
 _TICKS: Final = 3
 _CORNER: Final = np.radians(15.0)
 _CORNER_SIZE: Final = 0.4e-3  # m, of a rounded corner
@@ -66,7 +69,7 @@ class Begun:
         lead: whether there is a lead-in.
         share: the speed at the first tick, or in the first ticks together, as a part of that of the flying lap.
         at_feed: the speed at the first tick as a part of the feed.
-        room: whether geometry leaves room to reach it.
+        lacking: why geometry leaves no room to reach it; empty where it does.
         why: in words, where the speed is not reached.
     """
 
@@ -75,7 +78,7 @@ class Begun:
     lead: bool
     share: float
     at_feed: float
-    room: bool
+    lacking: str
     why: str
 
 
@@ -223,7 +226,7 @@ def begun(planned: pipeline.Planned, drawn: dict[int, str], parts: list[Any]) ->
     for before, block in zip(program.blocks, program.blocks[1:], strict=False):
         if block.kind is BlockKind.CUT and block.contour is not None:
             first.setdefault(block.contour, (block.first, before.kind is BlockKind.LEAD_IN))
-    rings = {number: _ring(cuts, number, place[row]) for number, (row, _) in first.items()}
+    rings = {number: _ring(cuts, number, place[row : row + 2]) for number, (row, _) in first.items()}
     laps = _flying(rings, planned)
     found = []
     for number, (row, lead) in first.items():
@@ -233,20 +236,21 @@ def begun(planned: pipeline.Planned, drawn: dict[int, str], parts: list[Any]) ->
         # The first tick alone, and all of the first ticks together: a lap has its ticks at other places.
         share = float(np.min((needed * program.rate_hz / np.arange(1, _TICKS + 1))[[0, -1]]))
         at_feed, allowed = float(speed[row]) / process.feed, float(along[1] / needed[0])
-        room = share >= REACHED or (
-            _longest_edge(rings[number]) > 2.0 * _TICKS * allowed / program.rate_hz
-            and _leaves_room(rings[number], contour, allowed, planned, parts)
-        )
+        room = "" if share >= ALMOST else _lacking(rings[number], contour, allowed, planned, parts)
         why = "" if share >= REACHED else _why(number, planned, lead, share)
         found.append(Begun(drawn[number], contour.is_hole, lead, share, at_feed, room, why))
     return found
 
 
-def _ring(cuts: tuple[Cut, ...], number: int, place: Array) -> Curve:
-    """The path of the beam's centre of a contour, from the place on it that is nearest to ``place``, (2,) m."""
+def _ring(cuts: tuple[Cut, ...], number: int, way: Array) -> Curve:
+    """The path of the beam's centre of a contour, run as the tool does on a way through (2, 2) m, from its first."""
     own = [cut.curve for cut in cuts if cut.contour == number]
-    ring = min(own, key=lambda one: curves.nearest(one, place)[2])
-    segment, distance, _ = curves.nearest(ring, place)
+    ring = min(own, key=lambda one: curves.nearest(one, way[0])[2])
+    segment, distance, _ = curves.nearest(ring, way[0])
+    _, heading = curves.evaluate(ring, np.array([segment]), np.array([distance]))
+    if (way[1] - way[0]) @ np.array([np.cos(heading[0]), np.sin(heading[0])]) < 0.0:
+        ring = curves.reverse(ring)
+        segment, distance, _ = curves.nearest(ring, way[0])
     return curves.start_at(ring, segment, distance)
 
 
@@ -293,6 +297,13 @@ def _passed(way: Array, so_far: Array, start: Array, expected: float) -> float:
     return float(at[np.argmin(off)])
 
 
+def _lacking(ring: Curve, contour: Contour, speed: float, planned: pipeline.Planned, parts: list[Any]) -> str:
+    """Why geometry leaves no room to reach a speed; empty where it does."""
+    if _longest_edge(ring) <= 2.0 * _TICKS * speed / planned.program.rate_hz:
+        return "no edge is long enough"
+    return "" if _leaves_room(ring, contour, speed, planned, parts) else "no lead fits"
+
+
 def _longest_edge(ring: Curve) -> float:
     """The longest way along a ring without a corner, or a bend as sharp as one, m."""
     length = curves.lengths(ring)
@@ -320,7 +331,7 @@ def _leaves_room(ring: Curve, contour: Contour, speed: float, planned: pipeline.
     if acceleration**2 / jerk > speed:
         run_up = speed * np.sqrt(speed / jerk)
     radius = max(speed**2 / acceleration, np.sqrt(speed**3 / jerk), 2.0 * run_up / np.pi)
-    side = 1.0 if contour.is_hole else -1.0
+    side = (1.0 if contour.is_hole else -1.0) * (1.0 if curves.signed_area(ring) > 0.0 else -1.0)
     back = np.linspace(0.0, 0.5 * np.pi, 20)
     normal = side * np.stack([-np.sin(heading), np.cos(heading)], axis=1)
     tangent = np.stack([np.cos(heading), np.sin(heading)], axis=1)
@@ -404,12 +415,21 @@ def show(found: list[Begun]) -> None:
     rows = sorted({(one.kind, one.hole) for one in found})
     for kind, hole in [*rows, ("all", False)]:
         own = [one for one in found if kind == "all" or (one.kind, one.hole) == (kind, hole)]
-        room = [one for one in own if one.room]
+        room = [one for one in own if not one.lacking]
         reached = sum(one.share >= REACHED for one in room)
         name = kind if kind == "all" or kind == "tiny hole" else f"{kind}, {'hole' if hole else 'outline'}"
         part = 100.0 * reached / max(len(room), 1)
         at_feed = sum(one.at_feed >= REACHED for one in own)
         print(f"{name:<20} {len(own):>4} {reached:>8} {len(room):>5} {part:>8.1f}% {at_feed:>8}")
+    for part in (0.9, REACHED, ALMOST):
+        counted = [one for one in found if not one.lacking or one.share >= part]
+        reached = sum(one.share >= part for one in counted)
+        edge = sum(one.lacking.startswith("no edge") and one.share < part for one in found)
+        every = 100.0 * reached / (len(counted) + edge)
+        print(
+            f"{100.0 * part:.0f} % of the speed of the flying lap: reached by {reached} of {len(counted)} with room, "
+            f"{100.0 * reached / max(len(counted), 1):.1f} %; {every:.1f} % with those counted that have no long edge"
+        )
 
 
 def main() -> None:
@@ -430,7 +450,7 @@ def main() -> None:
     show(found)
     print("\nnot reached:")
     for one in sorted((one for one in found if one.why), key=lambda one: one.share):
-        print(f"  {one.why}{'' if one.room else ', no room'} ({one.kind})")
+        print(f"  {one.why}{', ' if one.lacking else ''}{one.lacking} ({one.kind})")
     print(
         f"\nburnt beyond the tolerances: {1e12 * area:.0f} um2; the tool came {1e6 * worst:.1f} um too near to a part"
     )

@@ -67,7 +67,7 @@ REACHED: Final = 0.97
 _BRIDGE: Final = 0.2e-3  # m, longer than the blends at the ends of leads
 _AS_FAST: Final = 0.95  # of the highest speed, for a place that the order may choose
 _ALIKE: Final = 0.01  # shares that differ by less are as good
-_BLENDED: Final = 0.7  # of the tolerance, for the blend between a lead and the contour
+_BLENDED: Final = 0.45  # of the tolerance, for the blend between a lead and the contour
 _NAMED: Final = 5
 
 

@@ -28,7 +28,8 @@ _LEAST_JUMP: Final = 0.25  # of what is allowed, where the contour itself bends 
 _ROUNDS: Final = 10
 _GROWTH: Final = 1.15
 _ENOUGH: Final = 0.99  # of the speed
-_WORTH: Final = 1.005
+_LONGEST: Final = 8.0  # times the run-up; beyond that a lead grows for hardly any speed
+_WORTH: Final = 1.01
 _BLEND: Final = 0.0062  # see `motion.corners`
 _SHORTEST: Final = 1e-4  # m
 
@@ -150,10 +151,11 @@ def grown(size: Size, speed: Array, able: Ability, deviation: float, beyond: Arr
         ahead: how far the contour goes on as it begins, (N,) m.
     """
     best, reached = size, arrival(size, able, deviation, beyond, ahead)
+    most = _LONGEST * run_up(speed, able)
     for round_ in range(1, _ROUNDS):
         larger = size.scaled(_GROWTH**round_)
         found = arrival(larger, able, deviation, beyond, ahead)
-        better = (reached < _ENOUGH * speed) & (found > _WORTH * reached)
+        better = (reached < _ENOUGH * speed) & (found > _WORTH * reached) & (larger.length < most)
         best = Size(*(np.where(better, new, old) for new, old in zip(larger, best, strict=True)))
         reached = np.where(better, found, reached)
     return best
