@@ -3,7 +3,8 @@
 Nothing here asks the planner how it chose a lead. What the beam burns is the way of the tool at the setpoints, as wide
 as the kerf. How fast the contour can be passed where it begins comes from a flying lap: the tool has been on the
 same contour for a while. Geometry leaves room where a lead of the least size that the robot's limits allow, without any
-margin, fits at one of many places around the contour.
+margin, fits at one of many places around the contour, and where the contour has an edge somewhere that is long enough
+for twice the ticks that are measured: between the corners of a small gear there is no speed to reach.
 """
 
 from __future__ import annotations
@@ -40,6 +41,8 @@ REACHED: Final = 0.95
 """Part of the speed of the flying lap, at the first ticks, from which on it counts as reached."""
 
 _TICKS: Final = 3
+_CORNER: Final = np.radians(15.0)
+_CORNER_SIZE: Final = 0.4e-3  # m, of a rounded corner
 _WEB: Final = 0.8  # mm of material between lines, at least
 _PLACES: Final = 180
 _FINE: Final = 8  # places per tick
@@ -63,7 +66,7 @@ class Begun:
         lead: whether there is a lead-in.
         share: the speed at the first tick, or in the first ticks together, as a part of that of the flying lap.
         at_feed: the speed at the first tick as a part of the feed.
-        room: whether a lead of the least size fits.
+        room: whether geometry leaves room to reach it.
         why: in words, where the speed is not reached.
     """
 
@@ -230,7 +233,10 @@ def begun(planned: pipeline.Planned, drawn: dict[int, str], parts: list[Any]) ->
         # The first tick alone, and all of the first ticks together: a lap has its ticks at other places.
         share = float(np.min((needed * program.rate_hz / np.arange(1, _TICKS + 1))[[0, -1]]))
         at_feed, allowed = float(speed[row]) / process.feed, float(along[1] / needed[0])
-        room = share >= REACHED or _leaves_room(rings[number], contour, allowed, planned, parts)
+        room = share >= REACHED or (
+            _longest_edge(rings[number]) > 2.0 * _TICKS * allowed / program.rate_hz
+            and _leaves_room(rings[number], contour, allowed, planned, parts)
+        )
         why = "" if share >= REACHED else _why(number, planned, lead, share)
         found.append(Begun(drawn[number], contour.is_hole, lead, share, at_feed, room, why))
     return found
@@ -270,8 +276,35 @@ def _flying(rings: dict[int, Curve], planned: pipeline.Planned) -> dict[int, tup
     for block in moved.blocks:
         if block.kind is BlockKind.CUT and block.contour is not None:
             own = np.concatenate([[0.0], np.cumsum(step[block.first : block.last + 1])])
-            found[block.contour] = (own - starts[block.contour], np.arange(len(own)) / program.rate_hz)
+            zero = _passed(
+                place[block.first : block.last + 2], own, rings[block.contour].points[0], starts[block.contour]
+            )
+            found[block.contour] = (own - zero, np.arange(len(own)) / program.rate_hz)
     return found
+
+
+def _passed(way: Array, so_far: Array, start: Array, expected: float) -> float:
+    """How far along a way through (N, 2) m the tool passes a place; chords across corners make the way shorter."""
+    arm, step = start - way[:-1], np.diff(way, axis=0)
+    share = np.clip(np.sum(arm * step, axis=1) / np.maximum(np.sum(step**2, axis=1), 1e-18), 0.0, 1.0)
+    off = np.hypot(*(arm - share[:, None] * step).T)
+    at = so_far[:-1] + share * np.diff(so_far)
+    off[np.abs(at - expected) > np.maximum(2e-3, 0.2 * expected)] = np.inf
+    return float(at[np.argmin(off)])
+
+
+def _longest_edge(ring: Curve) -> float:
+    """The longest way along a ring without a corner, or a bend as sharp as one, m."""
+    length = curves.lengths(ring)
+    angle = np.abs(np.roll(curves.corner_angles(ring), -1)) > _CORNER
+    bend = (np.abs(curves.turns(ring)) > _CORNER) & (length < _CORNER_SIZE)
+    sharp = np.flatnonzero(angle | bend)
+    if not len(sharp):
+        return float(length.sum())
+    turned = np.roll(np.where(bend, 0.0, length), -int(sharp[0]) - 1)
+    ends = np.roll(angle | bend, -int(sharp[0]) - 1)
+    way = np.cumsum(turned)[ends]
+    return float(np.diff(way, prepend=0.0).max())
 
 
 def _leaves_room(ring: Curve, contour: Contour, speed: float, planned: pipeline.Planned, parts: list[Any]) -> bool:
@@ -346,14 +379,18 @@ def cost(counts: tuple[int, ...]) -> Iterator[tuple[int, float]]:
     robot = robot_of("irb360-1600")
     process: Process = replace(load_process("steel-1mm-fibre"), lead_in=Lead("arc"), lead_out=Lead("arc"))
     where = Placement(0.0, 0.0, 0.0, robot.workspace.sheet_z)
+    chance = np.random.default_rng(1)
+    drawn = [_placed(KINDS[index % 6], 7.0, (0.0, 0.0), chance).vertices for index in range(60)]
+    shapes = [Contour(1, Curve(points=1e-3 * one[:, :2], bulges=one[:, 2]), "CUT", ("0",), 0, None) for one in drawn]
+    paths = [kerf.offset([one], kerf=process.kerf).cuts[0] for one in shapes]
     for count in counts:
-        chance, across = np.random.default_rng(count), int(np.ceil(np.sqrt(count)))
-        contours = []
+        across = int(np.ceil(np.sqrt(count)))
+        contours, cuts = [], []
         for number in range(1, count + 1):
-            own = _placed(KINDS[number % 6], 7.0, (10.0 * (number % across), 10.0 * (number // across)), chance)
-            curve = Curve(points=1e-3 * (own.vertices[:, :2] - 5.0 * across), bulges=own.vertices[:, 2])
-            contours.append(Contour(number, curve, "CUT", ("0",), 0, None))
-        cuts = kerf.offset(contours, kerf=process.kerf).cuts
+            shift = 0.01 * (number % across - 0.5 * across), 0.01 * (number // across - 0.5 * across)
+            own, path = shapes[number % 60], paths[number % 60]
+            contours.append(replace(own, number=number, curve=curves.transform(own.curve, shift=shift)))
+            cuts.append(replace(path, contour=number, curve=curves.transform(path.curve, shift=shift)))
         reach = Reach(robot, where)
         start = time.perf_counter()
         waste = Waste(contours, kerf=process.kerf, is_allowed=reach.is_allowed)

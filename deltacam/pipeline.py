@@ -335,8 +335,10 @@ def _cutting(
     return moves, (*found.findings, *left_out)
 
 
-def _frame(_: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Setpoints, tuple[Finding, ...]]:
-    (left, bottom), (right, top) = placement.bounding_box(cuts)
+def _frame(part: Drawing, cuts: tuple[Cut, ...], how: _How, where: Placement) -> tuple[Setpoints, tuple[Finding, ...]]:
+    worked = _ways(part, cuts, how, where).cuts
+    leads = [stretch for cut in worked for stretch in cut.way]  # and loops, which go outside of the part
+    (left, bottom), (right, top) = placement.bounding_box([*worked, *leads])
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
     placement.refuse_frame_outside(corners, robot=how.robot, placement=where)
     return setpoints.plan_frame(corners, robot=how.robot, process=how.process, placement=where), ()

@@ -13,15 +13,17 @@ from deltacam.report.picture import to_svg
 
 SAMPLES: Final = Path(__file__).parents[1] / "samples"
 FEEDS: Final = {"gear": 0.15}  # m/s
+PROCESSES: Final = {"mixed": SAMPLES / "mixed.toml"}
 
 
 def main() -> None:
-    """Plan each sample with its feed and draw what the tool does."""
+    """Plan each sample with its feed or process and draw what the tool does."""
     parser = argparse.ArgumentParser(description="Draw the pictures of the documentation.")
     parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parent / "images", help="folder")
     folder = parser.parse_args().output
-    for name, feed in FEEDS.items():
-        planned = plan(SAMPLES / f"{name}.dxf", process=replace(load_process("steel-1mm-fibre"), feed=feed))
+    feeds = {name: replace(load_process("steel-1mm-fibre"), feed=feed) for name, feed in FEEDS.items()}
+    for name, process in {**feeds, **PROCESSES}.items():
+        planned = plan(SAMPLES / f"{name}.dxf", process=process, what_if=False)
         (folder / f"{name}.svg").write_text(to_svg(planned.program, drawing=planned.drawing), encoding="utf-8")
 
 

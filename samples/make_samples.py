@@ -125,6 +125,17 @@ def place_all(chain: Sequence[Bezier], angle: float, at: Point) -> list[Bezier]:
     return [shapes.moved(bezier, angle, at) for bezier in chain]
 
 
+def panels(model: Any, gap: float = 0.15) -> None:
+    """Nine cover plates in rows, as far apart as the kerf of the process steel-1mm-fibre is wide."""
+    width, height = 60.0, 40.0
+    for column in (-1, 0, 1):
+        for row in (-1, 0, 1):
+            x, y = column * (width + gap), row * (height + gap)
+            polyline(model, shapes.box(width, height, at=(x, y)))
+            circle(model, x - 24.0, y, 2.2)
+            circle(model, x + 24.0, y, 2.2)
+
+
 def snowflake(model: Any) -> None:
     """A snowflake of straight lines, all corners sharp: 216 in its outline."""
     half_arm = list(shapes.snow_arm(reach=88.0, stem=2.4, branches=((34.0, 26.0), (50.0, 19.0), (66.0, 11.0))))
@@ -273,6 +284,7 @@ DRAWINGS: Final[dict[str, Callable[[Any], None]]] = {
     "gear": gear,
     "mixed": mixed,
     "nameplate": nameplate,
+    "panels": panels,
     "sheet": sheet,
     "snowflake": snowflake,
 }

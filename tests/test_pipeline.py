@@ -80,7 +80,8 @@ def test_another_judge_agrees(name: str, tmp_path: Path) -> None:
         runs = [sheet[b.first : b.last + 2] for b in blocks]
         assert shapely.distance(shapely.points(np.concatenate(runs)), edge).max() <= program.process.tolerance + 1e-6
         swept = shapely.union_all([shapely.LineString(run) for run in runs])
-        assert edge.difference(swept.buffer(60e-6)).length < 1e-6
+        led = shapely.union_all([shapely.LineString(sheet[b.first - 1 : b.last + 2]) for b in blocks])
+        assert edge.difference(led.buffer(60e-6)).length < 1e-6
         assert 0.98 <= swept.length / edge.length <= 1.05
 
 
@@ -208,3 +209,11 @@ def test_killing_the_planner_leaves_no_program_or_a_whole_one(drone: Planned, tm
     program = Outputs.of("drone-top-onshape.dxf", tmp_path).program
     assert not program.exists() or program.read_bytes() == drone.content
     assert [path.name for path in tmp_path.glob("*.csv")] == [program.name] * program.exists()
+
+
+def test_a_frame_goes_around_the_leads_too(drone: Planned) -> None:
+    frame = plan(DXF / "drone-top-onshape.dxf", unit="mm", mode=Mode.FRAME)
+    inside, around = (planned.program.robot.forward(planned.program.q)[:, :2] for planned in (drone, frame))
+    on = np.isin([drone.program.blocks[index].kind for index in drone.program.block], ["lead_in", "cut", "lead_out"])
+    assert (inside[on].min(axis=0) > around.min(axis=0) - 50e-6).all()
+    assert (inside[on].max(axis=0) < around.max(axis=0) + 50e-6).all()

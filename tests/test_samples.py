@@ -33,6 +33,7 @@ EXPECTED = {
     "gear": Expected(contours=8, parts=1, deepest=1, ignored=0),
     "mixed": Expected(contours=55, parts=15, deepest=3, ignored=0, engraved=11),
     "nameplate": Expected(contours=53, parts=1 + 3, deepest=2, ignored=0),
+    "panels": Expected(contours=27, parts=9, deepest=1, ignored=0),
     "sheet": Expected(contours=184, parts=92, deepest=4, ignored=0),
     "snowflake": Expected(contours=8, parts=1, deepest=1, ignored=0),
 }

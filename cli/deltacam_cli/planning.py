@@ -122,7 +122,7 @@ def settings(
     ignored_layers: tuple[str, ...],
     join: str | None,
     accept_loss: bool,
-    **single_values: str | None,
+    **single_values: Any,
 ) -> dict[str, Any]:
     """What `planning_options` and the user's own defaults say, as the pipeline takes it.
 
@@ -139,7 +139,7 @@ def settings(
     }
 
 
-def _process(name: str | None, own: Defaults, **single_values: str | None) -> Process:
+def _process(name: str | None, own: Defaults, **single_values: Any) -> Process:
     """The process with the single values that the command line gives."""
     from deltacam.cutting.process import DEFAULT_PROCESS, load_process
 

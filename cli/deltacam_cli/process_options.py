@@ -46,6 +46,11 @@ PROCESS_OPTIONS: Final = (
     click.option("--overcut", metavar="LENGTH", help="How far the laser stays on beyond the start of a closed cut."),
     click.option("--tabs", metavar="N[:WIDTH]", help="So many bridges hold every outline in the sheet; 0 for none."),
     click.option("--passes", metavar="N", help="How often every cut is run."),
+    click.option(
+        "--common-edges/--no-common-edges",
+        default=None,
+        help="Cut edges that two parts share, one kerf apart, once; else as the process says.",
+    ),
 )
 
 
@@ -58,6 +63,7 @@ def with_options(
     tabs: str | None,
     lead_in: str | None,
     lead_out: str | None,
+    common_edges: bool | None = None,
     **single_values: str | None,
 ) -> Process:
     """The process with the values that the command line gives; a feed given is that with the gas in use.
@@ -78,6 +84,7 @@ def with_options(
         "passes": None if single_values["passes"] is None else whole("--passes", single_values["passes"]),
         "lead_in": None if lead_in is None else lead("--lead-in", lead_in, process.lead_in),
         "lead_out": None if lead_out is None else lead("--lead-out", lead_out, process.lead_out),
+        "common_edges": common_edges,
     }
     changed = replace(process, **{key: value for key, value in values.items() if value is not None})
     return changed if tabs is None else replace(changed, tabs=_tabs(tabs, process.tabs))

@@ -153,7 +153,8 @@ def _refuse_collisions(contours: Sequence[Contour], cuts: Sequence[Cut], kerf: f
     raise InfeasibleError(
         f"a kerf of {to_mm(kerf):.3g} mm is wider than the gap to {contour.where}, which would be cut into{more}",
         where=f"{cut.where} at {_place(meeting)}",
-        hint="use a narrower kerf (--kerf), or move the contours apart; lines shared by two parts must be drawn once",
+        hint="use a narrower kerf (--kerf), or move the contours apart: by one kerf, and --common-edges cuts the edge "
+        "between two parts once; lines shared by two parts must be drawn once",
     )
 
 

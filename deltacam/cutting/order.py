@@ -1,14 +1,16 @@
 """The order of the cuts: what lies inside a contour before the contour, and little time on the way in between.
 
 A part that has been cut out may drop or tilt, so nothing on it can be engraved or cut afterwards: the whole sheet is
-engraved first, then the open lines are cut, then the contours, inner before outer. What is free is chosen by `search`:
-the sequence, where a cut begins, and which way open ones are run.
+engraved first, then the open lines are cut, then the contours, inner before outer, and those that share an edge with
+another one, of which open cuts are left, after that one. What is free is chosen by `search`: the sequence, where a cut
+begins, and which way open ones are run.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -65,6 +67,7 @@ def order(
     effort: int | None = None,
     together: bool = False,
     heat: Heat | None = None,
+    after: Mapping[int, Sequence[int]] = MappingProxyType({}),
     progress: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> Ordered:
     """Order the cuts and choose where each begins, and which way open ones are run.
@@ -80,6 +83,7 @@ def order(
         effort: how often the search tries to get out of a dead end; more is better and takes longer.
         together: whether a part's contours stay together, that is, those of one outermost contour.
         heat: a rule for near cuts; what is nearer than its distance waits until its time has passed.
+        after: for each contour that lost an edge to others those others, as `shared.Shared.after` has them.
         progress: is told how many tries are done, and of how many.
 
     Returns:
@@ -88,7 +92,7 @@ def order(
     if not cuts:
         return Ordered((), (), (), 0.0, ())
     choice = Choice.of(cuts, places)
-    whole = _Whole.of(cuts, parents, start, cost, together=together, heat=heat)
+    whole = _Whole.of(cuts, parents, start, cost, together=together, heat=heat, after=after)
     effort = default_effort(len(cuts)) if effort is None else effort
     found = np.array(search(whole.problem(choice), seed=seed, tries=effort, progress=progress))
     sequence = choice.owner[found].tolist()
@@ -118,11 +122,12 @@ class _Whole(NamedTuple):
         *,
         together: bool,
         heat: Heat | None,
+        after: Mapping[int, Sequence[int]] = MappingProxyType({}),
     ) -> _Whole:
-        kinds = [_stage(cut) for cut in cuts]
+        kinds = [_stage(cut, after) for cut in cuts]
         stages = [sorted(set(kinds)).index(kind) for kind in kinds]
         parts = [_outermost(cut.contour, parents) if together else 0 for cut in cuts]
-        rule = Precedence.between(cuts, parents, stages)
+        rule = Precedence.between(cuts, parents, stages, _by_part(after, parents) if together else after)
         return cls(start, rule, np.array([*stages, max(stages)]), np.array([*parts, -1]), cost, heat)
 
     def problem(self, choice: Choice) -> Problem:
@@ -146,11 +151,25 @@ def problem_of(
     return whole.problem(Choice.of(cuts, places))
 
 
-def _stage(cut: Cut) -> int:
-    """0 for engraving, 1 for open cuts, 2 for closed ones."""
+def _stage(cut: Cut, after: Mapping[int, Sequence[int]]) -> int:
+    """0 for engraving, 1 for open cuts, 2 for closed ones and what is left of them."""
     if cut.operation is Operation.ENGRAVE:
         return 0
-    return 2 if cut.curve.closed else 1
+    return 2 if cut.curve.closed or cut.contour in after else 1
+
+
+def _by_part(after: Mapping[int, Sequence[int]], parents: Mapping[int, int | None]) -> dict[int, tuple[int, ...]]:
+    """The same where parts stay together: what a contour waits for, all of its part waits for."""
+    part = {contour: _outermost(contour, parents) for contour in parents}
+    waiting: dict[int, set[int]] = {}
+    for contour, others in after.items():
+        waiting.setdefault(part[contour], set()).update(other for other in others if part[other] != part[contour])
+    found = {
+        contour: waiting.get(part[contour], set()) | set(after.get(contour, ()))
+        for contour in parents
+        if part[contour] in waiting
+    }
+    return {contour: tuple(sorted(others)) for contour, others in sorted(found.items()) if others}
 
 
 def _outermost(contour: int, parents: Mapping[int, int | None]) -> int:

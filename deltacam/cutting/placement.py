@@ -12,14 +12,14 @@ from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
 from deltacam.geometry import rings
 from deltacam.geometry.pack import Pack
-from deltacam.model import Array, Contour, Cut, IntArray, Operation, Placement
+from deltacam.model import Array, Contour, Cut, IntArray, Operation, Placement, Stretch
 from deltacam.units import METRES_PER, likely_units, to_mm
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
 
 
-def bounding_box(contours: Sequence[Contour] | Sequence[Cut]) -> Array:
+def bounding_box(contours: Sequence[Contour | Cut | Stretch]) -> Array:
     """The smallest x and y, and the largest, of all the curves, (2, 2) m."""
     boxes = Pack.of(contour.curve for contour in contours).bounds()
     return np.array([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from deltacam.model import Cut, IntArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Precedence:
-    """The rule that what lies inside a contour is cut before it, by index of N cuts.
+    """The rule that what lies inside a contour is cut before it, and what is asked besides, by index of N cuts.
 
     Attributes:
         waiting: how many cuts come directly before each, (N,).
@@ -34,7 +35,11 @@ class Precedence:
 
     @classmethod
     def between(
-        cls, cuts: Sequence[Cut], parents: Mapping[int, int | None], stages: Sequence[int] | None = None
+        cls,
+        cuts: Sequence[Cut],
+        parents: Mapping[int, int | None],
+        stages: Sequence[int] | None = None,
+        after: Mapping[int, Sequence[int]] = MappingProxyType({}),
     ) -> Precedence:
         """The rule among the cuts, given the number of the contour around each contour.
 
@@ -43,17 +48,24 @@ class Precedence:
             parents: by the number of each contour that has a cut or lies around one.
             stages: of each cut; the rule is only within a stage, and reaches past contours of others. All are of one
                 stage where None.
+            after: for the numbers of some contours those whose cuts of the same stage come before all of theirs too;
+                nobody may wait for himself by it.
         """
         stages = [0] * len(cuts) if stages is None else stages
         by_contour: dict[tuple[int, int], list[int]] = {}
         for index, (cut, stage) in enumerate(zip(cuts, stages, strict=True)):
             by_contour.setdefault((cut.contour, stage), []).append(index)
+        following: dict[int, list[int]] = {}
+        for contour, others in after.items():
+            for other in others:
+                following.setdefault(other, []).append(contour)
         outer = []
         for cut, stage in zip(cuts, stages, strict=True):
             around = parents[cut.contour]
             while around is not None and (around, stage) not in by_contour:
                 around = parents.get(around)
-            outer.append([] if around is None else by_contour[around, stage])
+            later = [] if around is None else by_contour[around, stage]
+            outer.append([*later, *(one for last in following.get(cut.contour, ()) for one in by_contour[last, stage])])
         widest = max(map(len, outer), default=0)
         table = np.full((len(cuts) + 1, max(widest, 1)), len(cuts), dtype=np.int64)
         for index, found in enumerate(outer):

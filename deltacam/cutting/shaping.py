@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -61,13 +62,20 @@ def looped(cuts: Sequence[Cut], contours: Sequence[Contour], *, process: Process
     return tuple(done), _few(findings)
 
 
-def tabbed(cuts: Sequence[Cut], contours: Sequence[Contour], *, process: Process) -> Shaped:
+def tabbed(
+    cuts: Sequence[Cut],
+    contours: Sequence[Contour],
+    *,
+    process: Process,
+    clear: Mapping[int, Sequence[Curve]] = MappingProxyType({}),
+) -> Shaped:
     """The cuts with the tabs that the process asks for.
 
     Args:
         cuts: with their leads and loops.
         contours: of the drawing.
         process: says how many tabs, and how wide.
+        clear: by number of contour, edges that no tab may be at: another part is right behind them.
     """
     rule = process.tabs
     if rule is None:
@@ -84,7 +92,8 @@ def tabbed(cuts: Sequence[Cut], contours: Sequence[Contour], *, process: Process
         near = tree.query(shapely.buffer(shapely.box(*lines[index].bounds), 2.0 * (rule.width + process.kerf)))
         others = shapely.STRtree(lines[near[near != index]])
         side: loops.Side = "left" if waste_side(cut, contour, process.kerf) > 0.0 else "right"
-        found = with_tabs(way_of(cut), contour, side=side, kerf=process.kerf, rule=rule, others=others)
+        edges = clear.get(cut.contour, ())
+        found = with_tabs(way_of(cut), contour, side=side, kerf=process.kerf, rule=rule, others=others, clear=edges)
         done.append(replace(cut, way=found.way))
         findings += found.findings
     return tuple(done), _few(findings)
@@ -99,9 +108,9 @@ def repeated(cuts: Sequence[Cut], *, process: Process) -> tuple[Cut, ...]:
 
 def _repeated(cut: Cut, passes: int) -> Cut:
     if not cut.curve.closed:
-        back = curves.reverse(cut.curve)
-        turns = (back if number % 2 else cut.curve for number in range(passes))
-        return replace(cut, way=tuple(Stretch(BlockKind.CUT, curve) for curve in turns))
+        to = cut.way or (Stretch(BlockKind.CUT, cut.curve),)
+        fro = tuple(replace(stretch, curve=curves.reverse(stretch.curve)) for stretch in reversed(to))
+        return replace(cut, way=tuple(stretch for number in range(passes) for stretch in (fro if number % 2 else to)))
     way = way_of(cut)
     around = [index for index, stretch in enumerate(way) if stretch.kind not in _ENDS]
     first, end = around[0], around[-1] + 1

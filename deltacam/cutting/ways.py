@@ -1,7 +1,8 @@
 """From the cuts of a drawing to the ways of the tool along them, in order.
 
-Leads say where every closed cut may begin, the order chooses among these places, and then loops, tabs, slow bends and
-further passes are put on the way that was chosen.
+Edges that two outlines share are cut once where the process says so. Leads say where every closed cut may begin, the
+order chooses among these places, and then loops, tabs, slow bends and further passes are put on the way that was
+chosen.
 """
 
 from __future__ import annotations
@@ -13,16 +14,20 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from deltacam.cutting import feeds
-from deltacam.cutting.leads.approaches import Approach, approaches, begun
+from deltacam.cutting.leads.approaches import Approach, approaches, begun, has_leads
 from deltacam.cutting.leads.reach import Reach
 from deltacam.cutting.leads.waste import Waste
 from deltacam.cutting.order import Ordered, effort_for, order
 from deltacam.cutting.shaping import looped, repeated, tabbed
+from deltacam.cutting.shared import SHORTEST, Shared, share_edges
 from deltacam.model import Array, Contour, Cut, Finding, Placement, Process, Search
 from deltacam.robot.rapid import Rapids
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
+
+_APART: Final = 0.5
+"""Part of the tolerance that the paths of two outlines may be apart where one cut serves both."""
 
 _WITHIN: Final = 0.1
 """How much less than estimated a rapid may take: what has to wait for heat waits so much longer."""
@@ -66,7 +71,10 @@ def ways(
     reach = Reach(robot, placement)
     waste = Waste(contours, kerf=process.kerf, is_allowed=reach.is_allowed)
     cuts = feeds.in_holes(cuts, contours, process=process)
-    choices, of_leads = approaches(cuts, contours, process=process, waste=waste, able=reach.able, tick=reach.tick)
+    cuts, after, edges, of_edges = _shared(cuts, contours, process)
+    choices, of_leads = approaches(
+        cuts, contours, process=process, waste=waste, able=reach.able, tick=reach.tick, clear=edges
+    )
     places = [
         [_spot(cut, one, process, reach.tick) for one in several] or None
         for cut, several in zip(cuts, choices, strict=True)
@@ -81,13 +89,29 @@ def ways(
         effort=None if search.time is None else effort_for(search.time, len(cuts)),
         together=search.together,
         heat=process.heat,
+        after=after,
         progress=progress,
     )
     led = _with_leads(found, choices, process, reach.tick)
     with_loops, of_loops = looped(led, contours, process=process, waste=waste, reach=reach)
-    with_tabs, of_tabs = tabbed(with_loops, contours, process=process)
+    with_tabs, of_tabs = tabbed(with_loops, contours, process=process, clear=edges)
     slowed = feeds.in_bends(with_tabs, contours, process=process)
-    return Ways(repeated(slowed, process=process), (*of_leads, *of_loops, *of_tabs))
+    return Ways(repeated(slowed, process=process), (*of_edges, *of_leads, *of_loops, *of_tabs))
+
+
+def _shared(cuts: Sequence[Cut], contours: Sequence[Contour], process: Process) -> Shared:
+    """The cuts with common edges cut once where the process asks for it, and what that takes away from others."""
+    if not process.common_edges:
+        return Shared(tuple(cuts), {}, {}, ())
+    shortest = SHORTEST + 2.0 * process.kerf
+    found = share_edges(cuts, contours, kerf=process.kerf, tolerance=_APART * process.tolerance, shortest=shortest)
+    left = [cut for cut in found.cuts if cut.contour in found.after and not cut.curve.closed]
+    asked = has_leads(process) or process.tabs is not None or process.corner == "loop"
+    if not left or not asked:
+        return found
+    what = f"{len(left)} open cuts are left of contours with shared edges, without leads, loops and tabs: they begin "
+    what += "and end in the kerf of another cut"
+    return found._replace(findings=(*found.findings, Finding(what, where=left[0].where, kind="common")))
 
 
 def _with_leads(

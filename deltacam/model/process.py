@@ -172,6 +172,7 @@ class Process:
         tabs: None for none.
         heat: None for no rule.
         passes: how often every cut is run, >= 1.
+        common_edges: whether edges that two outlines share, a kerf apart, are cut once.
         gases: what the process knows of gases; the feed is that of ``gas``.
         laser: fibre, co2; may be empty.
         laser_power: rated, W; 0 where nobody says.
@@ -207,6 +208,7 @@ class Process:
     tabs: Tabs | None = None
     heat: Heat | None = None
     passes: int = 1
+    common_edges: bool = False
     gases: tuple[Gas, ...] = ()
     laser: str = ""
     laser_power: float = 0.0

@@ -75,6 +75,7 @@ def from_meta(top: Fields) -> Process:
         tabs=_maybe(found, "tabs", Tabs, _tabs),
         heat=_maybe(found, "heat", Heat, _heat),
         passes=found.whole("passes", 1, _MOST),
+        common_edges=found.flag("common_edges"),
         gases=_each(found, "gases", Gas, _gas),
         laser=found.text("laser", empty=True),
         laser_power=found.number("laser_power", 0.0, 1e9),

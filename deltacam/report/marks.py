@@ -32,6 +32,7 @@ _DOT: Final = 3.0  # pixels from the middle of a dot to its edge
 _ARROW: Final = 5.5  # pixels from the middle of an arrow to its edge
 _SHORTEST: Final = 45.0  # pixels of a cut that has an arrow
 _APART: Final = 100.0  # pixels between the arrows of a cut
+_AROUND: Final = 30.0  # pixels around an arrow without others of its cut
 _CLOSEST: Final = 8e-3  # m between the arrows of a cut, however near one looks
 _STRAIGHT: Final = 1.5e-3  # m on both sides of an arrow in which the cut should not turn
 _WINDOW: Final = 0.3  # of the distance between arrows: where the straightest place is looked for
@@ -143,15 +144,17 @@ def _numbers(starts: Array, unit: float) -> Numbers:
 
 def _arrows(evidence: Evidence, runs: Sequence[Run], crowd: Crowd, unit: float) -> Arrows:
     """One arrow in the middle of every cut, more between as one looks closer; the first ones first."""
-    ways = [_way(evidence, run) for run in runs]
-    places = [place for way in ways for place in _places(*way, unit)]
+    places = [(*place, cut) for cut, run in enumerate(runs) for place in _places(*_way(evidence, run), unit)]
     places.sort(key=lambda place: place[0])
     found: list[tuple[float, float, float, float]] = []
-    for least, step, heading in places[:_MOST_ARROWS]:
-        point = (evidence.sheet[step] + evidence.sheet[step + 1]) / 2.0
-        _, zoom = crowd.free(point, np.zeros((1, 2)), np.full(2, _ARROW), least)
+    own = [Crowd(unit) for _ in runs]  # a cut that winds needs no more arrows than one that does not
+    for least, step, heading, cut in places[:_MOST_ARROWS]:
+        point, middle = (evidence.sheet[step] + evidence.sheet[step + 1]) / 2.0, np.zeros((1, 2))
+        _, far = own[cut].free(point, middle, np.full(2, _AROUND), least)
+        _, zoom = crowd.free(point, middle, np.full(2, _ARROW), far)
         if zoom < NEVER:
-            crowd.add(point, np.zeros(2), np.full(2, _ARROW), zoom)
+            crowd.add(point, middle[0], np.full(2, _ARROW), zoom)
+            own[cut].add(point, middle[0], np.full(2, _AROUND), zoom)
             found.append((float(point[0]), float(point[1]), heading, unit / zoom))
     columns = np.array(found).reshape(-1, 4)
     return Arrows(columns[:, :2], columns[:, 2], columns[:, 3])

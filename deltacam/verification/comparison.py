@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final
 
 from shapely import Polygon
 
@@ -13,10 +13,9 @@ from deltacam.verification.evidence import Evidence
 from deltacam.verification.kerf_path import flattened, rings
 from deltacam.verification.near import Lines
 from deltacam.verification.runs import Run
+from deltacam.verification.sharing import BETWEEN_TICKS, Beside, Outline, beside, open_runs
 from deltacam.verification.sizes import size
 from deltacam.verification.way import motion
-
-_ACCURACY: Final = 0.5e-6  # m, of the way of the tool between ticks
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,12 +27,16 @@ class Target:
         rings: its kerf path, or the line itself, (K, 2) m each, in the sheet frame; closed like the contour.
         path: the same, for distances; None where there is no ring.
         runs: the runs of the program that say they do with it what the drawing wants.
+        open_runs: those of them that are left of an outline which shares edges, and do not go around.
+        beside: where there are such, what is cut along its path for other outlines.
     """
 
     contour: Contour
     rings: tuple[Array, ...]
     path: Lines | None
     runs: tuple[Run, ...]
+    open_runs: tuple[Run, ...] = ()
+    beside: tuple[Beside, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,15 +71,24 @@ def compare(evidence: Evidence, drawing: Drawing) -> Comparison:
         runs[run.contour, run.operation].append(run)
     process, targets, sizes = evidence.program.process, [], []
     kerf, exact_above = process.kerf, (process.tolerance + process.chord_tolerance) / 2.0
-    for contour in drawing.contours:
-        found = rings(contour, kerf)
-        path = Lines(found, closed=contour.curve.closed) if found else None
-        done = tuple(runs[contour.number, contour.operation])
-        targets.append(Target(contour, found, path, done))
+    lines = [Outline(one, rings(one, kerf), tuple(runs[one.number, one.operation])) for one in drawing.contours]
+    near = beside(evidence, [one for one in lines if one.contour.has_kerf and not one.contour.is_hole])
+    for outline in lines:
+        contour, found, done = outline
+        targets.append(_target(evidence, outline, near))
         if contour.has_kerf and found and done:
-            ways = [motion(evidence, run.begin, run.end, _ACCURACY) for run in done]
+            ways = [motion(evidence, run.begin, run.end, BETWEEN_TICKS) for run in done]
+            ways += [way for cut in targets[-1].beside for way in cut.ways]
             sizes.append(size(contour, found, ways, kerf=kerf, exact_above=exact_above))
     return Comparison(evidence, drawing, tuple(targets), tuple(sizes), finished_parts(drawing))
+
+
+def _target(evidence: Evidence, outline: Outline, beside: Mapping[int, tuple[Beside, ...]]) -> Target:
+    contour, found, done = outline
+    path = Lines(found, closed=contour.curve.closed) if found else None
+    if contour.number not in beside:
+        return Target(contour, found, path, done)
+    return Target(contour, found, path, done, open_runs(evidence, outline), beside[contour.number])
 
 
 def finished_parts(drawing: Drawing) -> tuple[Polygon, ...]:

@@ -13,7 +13,7 @@ from deltacam.program.program import Program
 from deltacam.robot.robot import Robot
 from deltacam.verification.checks import file
 from deltacam.verification.checks.contours import same_drawing
-from deltacam.verification.checks.table import OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
+from deltacam.verification.checks.table import OF_COMMON_EDGES, OF_CONTOURS, OF_POSITIONS, OF_SETPOINTS
 from deltacam.verification.comparison import Comparison, compare
 from deltacam.verification.evidence import Evidence, gather
 from deltacam.verification.kerf_effects import kerf_effects
@@ -41,6 +41,9 @@ CONTOUR_CHECKS: Final = (
     "contours cut last",
 )
 """The names of the checks that need the drawing, to say so where there is none."""
+
+COMMON_EDGE_CHECKS: Final = ("parts come free", "shared edges first")
+"""The names of those that there are besides where outlines may share edges."""
 
 
 def verify(
@@ -75,6 +78,8 @@ def verify(
         checks += [check(evidence) for check in OF_POSITIONS]
         comparison = _compared(evidence, drawing, findings)
         checks += [check(comparison) for check in OF_CONTOURS if comparison]
+        if evidence.program.process.common_edges:
+            checks += [check(comparison) for check in OF_COMMON_EDGES if comparison]
         findings += _not_cut_again(comparison)
         sizes = comparison.sizes if comparison else ()
         effects = _effects(comparison) if comparison else ()
@@ -105,7 +110,8 @@ def _compared(evidence: Evidence, drawing: Drawing | None, findings: list[Findin
         return None
     if drawing is None:
         name = evidence.program.drawing.file
-        what = f"not checked without the drawing: {', '.join(CONTOUR_CHECKS)}"
+        names = CONTOUR_CHECKS + (COMMON_EDGE_CHECKS if evidence.program.process.common_edges else ())
+        what = f"not checked without the drawing: {', '.join(names)}"
         findings.append(Finding(what, hint=f"give the drawing: --drawing {name}", kind=UNCHECKED))
         return None
     return compare(evidence, drawing)

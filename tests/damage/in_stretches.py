@@ -32,7 +32,8 @@ def longer_overcut_in_meta(case: Example, amount: float, _: np.random.Generator)
 def shorter_overcut_in_meta(case: Example, amount: float, _: np.random.Generator) -> Program:
     """The process asks for an overcut that is shorter than the longest there is by so many limits."""
     process = case.program.process
-    over = [_length(case, slice(*rows)) - 2.0 * step for rows, step in _overcuts(case)]
+    tick = process.feed / case.rate
+    over = [_length(case, slice(*rows)) - max(step, tick) - step for rows, step in _overcuts(case)]
     if not over or max(over) - amount * _limit(case) < 0.0:
         raise NoPlaceError
     return replace(case.program, process=replace(process, overcut=max(over) - amount * _limit(case)))

@@ -159,6 +159,28 @@ def test_scrolling_zooms_the_part_until_its_setpoints_are_seen(chromium: Browser
     assert chromium.run(dots) > 0
 
 
+def test_zooming_in_shows_more_arrows_and_keeps_the_numbers(chromium: Browser, shown: Shown) -> None:
+    chromium.open(shown.path)
+    marks = """
+    const trace = (test) => part.data.find((one) => test(one) && one.x.length);
+    return [trace((one) => one.marker?.symbol === "arrow").x.length, trace((one) => one.text).text.length]
+    """
+    arrows, numbers = chromium.run(marks)
+    assert arrows >= 4
+    assert numbers == 4
+    zoom = "return Plotly.relayout(part, {'xaxis.range': [-20, 0], 'yaxis.range': [-10, 10]}).then(() => 0)"
+    chromium.run(zoom)
+    assert chromium.run(marks)[0] > arrows
+    assert chromium.run(marks)[1] == numbers
+    shapes = chromium.run("return part.querySelectorAll('.point').length")
+    assert shapes >= chromium.run(marks)[0] / 2
+    chromium.run("return Plotly.relayout(part, {'xaxis.range': [-400, 400]}).then(() => 0)")
+    assert chromium.run("return part.data.some((one) => one.marker?.symbol === 'arrow' && one.x.length)") is False
+    words = chromium.run("return [...document.querySelectorAll('.looks li')].map((one) => one.textContent)")
+    assert words == ["cut", "rapid", "pierce, in order", "direction"]
+    assert chromium.problems() == []
+
+
 def test_the_path_is_coloured_by_what_is_chosen(chromium: Browser, shown: Shown) -> None:
     chromium.open(shown.path)
     seen = {}

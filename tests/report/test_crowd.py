@@ -40,3 +40,10 @@ def test_a_mark_is_shown_as_soon_as_it_is_free_and_never_on_the_same_point() -> 
     assert crowd.free(np.array([2e-3, 0.0]), np.array([[0.0, 0.0], [20.0, 0.0]]), half) == (1, 1.0)
     assert crowd.free(np.zeros(2), np.zeros((1, 2)), half)[1] == NEVER
     assert crowd.free(np.array([0.5, 0.0]), np.zeros((1, 2)), half, least=3.0) == (0, 3.0)
+
+
+def test_a_mark_gives_no_way_to_one_that_is_shown_only_where_they_are_apart() -> None:
+    crowd, half = Crowd(1e-3), np.array([5.0, 5.0])
+    crowd.add(np.zeros(2), np.zeros(2), half, zoom=8.0)
+    assert crowd.free(np.array([2e-3, 0.0]), np.zeros((1, 2)), half) == (0, 1.0)
+    assert crowd.free(np.array([1e-3, 0.0]), np.zeros((1, 2)), half) == (0, 10.0)

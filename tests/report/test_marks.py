@@ -13,7 +13,8 @@ import pytest
 from deltacam.cutting.process import load_process
 from deltacam.model import BlockKind, Lead, Loops, Tabs
 from deltacam.pipeline import Planned, plan
-from deltacam.report.bands import BESIDE, DARK, RAPID, SUBJECT, TWICE, bands
+from deltacam.report.annotations import Looks
+from deltacam.report.bands import BESIDE, DARK, NAMES, RAPID, SUBJECT, TWICE, bands
 from deltacam.report.html import to_html
 from deltacam.report.marks import headings, marks_of
 from deltacam.report.payload import payload, to_script
@@ -176,8 +177,18 @@ def test_the_still_picture_has_them_as_well(planned: Planned) -> None:
     height = float(picture.get("viewBox", "").split()[3])
     for row in of_class(picture, "looks"):
         x, y = map(float, re.findall(r"[\d.]+", row.get("transform", "")))
-        assert x < 800.0
+        assert x + 36.0 + 8.0 * len("".join(row.itertext())) < 900.0
         assert y < height - 8.0
+
+
+def test_a_long_legend_goes_on_in_a_second_row() -> None:
+    words = {band: ", ".join(word for _, word in pairs) for band, pairs in NAMES.items()}
+    looks = Looks(words, tabs=True, arrows=True)
+    places = re.findall(r"translate\(([\d.]+) ([\d.]+)\).*?4.5\">(.*?)</text>", looks.drawn(0.0))
+    assert [name for *_, name in places] == [*words.values(), "tab", "direction"]
+    assert {float(y) for _, y, _ in places} == {0.0, 24.0}
+    assert max(float(x) + 36.0 + 8.0 * len(name) for x, _, name in places) < 900.0
+    assert looks.height == Looks({}).height + 48.0
 
 
 def test_the_table_of_contours_says_what_they_have_beside_their_cut(planned: Planned) -> None:

@@ -7,8 +7,9 @@ its middle on half a circle.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -63,6 +64,8 @@ PLACES: Final = 8
 REACHED: Final = 0.97
 """Part of the speed, as it is foretold, from which on it counts as reached."""
 
+_BRIDGE: Final = 0.2e-3  # m, longer than the blends at the ends of leads
+_AS_FAST: Final = 0.95  # of the highest speed, for a place that the order may choose
 _ALIKE: Final = 0.01  # shares that differ by less are as good
 _BLENDED: Final = 0.7  # of the tolerance, for the blend between a lead and the contour
 _NAMED: Final = 5
@@ -134,6 +137,7 @@ def approaches(
     waste: Waste,
     able: Callable[[Array], Ability],
     tick: float,
+    clear: Mapping[int, Sequence[Curve]] = MappingProxyType({}),
 ) -> tuple[list[tuple[Approach, ...]], tuple[Finding, ...]]:
     """The ways in which each cut may begin and end, the best leads only, and what a person should know of them.
 
@@ -144,24 +148,28 @@ def approaches(
         waste: where they may lie.
         able: what the tool can do at places (N, 2) m.
         tick: of the controller, s; an overcut is longer by the way of one.
+        clear: by number of contour, edges on which its cut should not begin; it does where there is nothing else.
 
     Returns:
-        for every cut its approaches, none for what is open or engraved.
+        for every cut its approaches, none for what is open or engraved, or may begin anywhere without leads.
     """
     closed = [k for k, cut in enumerate(cuts) if cut.curve.closed and cut.operation is Operation.CUT]
     found: list[tuple[Approach, ...]] = [() for _ in cuts]
-    if not closed or not has_leads(process):
+    if not has_leads(process):
+        closed = [k for k in closed if cuts[k].contour in clear]
+    if not closed:
         return found, ()
     beyond = [_overcut(process, cuts[index], tick) for index in closed]
-    rows = places(cuts, closed, contours, process=process, beyond=beyond, count=PLACES)
+    rows = places(cuts, closed, contours, process=process, beyond=beyond, count=PLACES, clear=clear)
     feed = np.array([cut.feed or process.feed for cut in cuts])[rows.cut]
     begin = _asked(process.lead_in, feed, rows.begin, rows.begin.ends.backwards(), able, process)
     end = _asked(process.lead_out, feed, rows.end, rows.end.ends, able, process)
     into, out = _from_the_middle(_tried(begin, waste), begin, rows, cuts, waste), _tried(end, waste)
-    for rows_of_cut in np.split(np.arange(len(rows.cut)), np.flatnonzero(np.diff(rows.cut)) + 1):
-        index = int(rows.cut[rows_of_cut[0]])
-        kept = rows_of_cut[_best(into.share[rows_of_cut], out.share[rows_of_cut])]
-        found[index] = tuple(_approach(rows, into, out, row) for row in kept.tolist())
+    of_cuts = np.split(np.arange(len(rows.cut)), np.flatnonzero(np.diff(rows.cut)) + 1)
+    arrival = into.share * begin.speed
+    kept = np.concatenate([own[_best(arrival[own], out.share[own])] for own in of_cuts])
+    for index, one in zip(rows.cut[kept].tolist(), _chosen(rows, into, out, kept), strict=True):
+        found[index] += (one,)
     return found, _findings(cuts, found, process)
 
 
@@ -185,7 +193,10 @@ def _overcut(process: Process, cut: Cut, tick: float) -> float:
 
     Also where no overcut is asked for: leads leave the contour on a blend each, and these must not leave a bridge.
     """
-    return min(process.overcut + (cut.feed or process.feed) * tick, curves.length(cut.curve))
+    if not has_leads(process):
+        return 0.0
+    step = (cut.feed or process.feed) * tick
+    return min(process.overcut + (step if process.overcut else min(step, _BRIDGE)), curves.length(cut.curve))
 
 
 def _asked(
@@ -197,6 +208,8 @@ def _asked(
     full = sizes.wanted(lead, speed, can, deviation, spots.bend)
     if lead.length is not None or lead.radius is not None or lead.shape == "line":
         speed = np.minimum(speed, sizes.arrival(full, can, deviation, spots.bend, spots.ahead))
+    else:
+        full = sizes.grown(full, speed, can, deviation, spots.bend, spots.ahead)
     return _Asked(ends, spots, can, np.maximum(speed, 1e-6), full, deviation)
 
 
@@ -248,19 +261,22 @@ def _inscribed(curve: Curve) -> float:
 
 
 def _best(into: Array, out: Array) -> BoolArray:
-    """Which places of a cut have the best lead-ins, and of these the best lead-outs."""
-    fastest = into >= min(into.max(), REACHED) - _ALIKE
+    """At which places of a cut the tool comes fastest, (N,) m/s, and of these those with the best lead-outs."""
+    fastest = into >= _AS_FAST * into.max()
     return np.asarray(fastest & (out >= min(out[fastest].max(), REACHED) - _ALIKE))
 
 
-def _approach(rows: Places, into: Tried, out: Tried, row: int) -> Approach:
-    return Approach(
-        segment=int(rows.segment[row]),
-        distance=float(rows.distance[row]),
-        lead_in=shapes.lead_in(rows.begin.ends, into.size, row) if into.share[row] else None,
-        lead_out=shapes.lead_out(rows.end.ends, out.size, row) if out.share[row] else None,
-        share=float(into.share[row]),
-    )
+def _chosen(rows: Places, into: Tried, out: Tried, kept: IntArray) -> list[Approach]:
+    """The approaches of some rows."""
+    lead_ins = shapes.lead_ins(rows.begin.ends.chosen(kept), into.size.chosen(kept))
+    lead_outs = shapes.lead_outs(rows.end.ends.chosen(kept), out.size.chosen(kept))
+    share = into.share[kept]
+    return [
+        Approach(*row)
+        for row in zip(
+            rows.segment[kept].tolist(), rows.distance[kept].tolist(), lead_ins, lead_outs, share.tolist(), strict=True
+        )
+    ]
 
 
 def _findings(cuts: Sequence[Cut], found: Sequence[tuple[Approach, ...]], process: Process) -> tuple[Finding, ...]:
@@ -274,17 +290,19 @@ def _findings(cuts: Sequence[Cut], found: Sequence[tuple[Approach, ...]], proces
     if some:
         names = ", ".join(f"contour {cut.contour} at {100.0 * share:.0f} %" for share, cut in some[:_NAMED])
         more = f" and {len(some) - _NAMED} more" if len(some) > _NAMED else ""
-        what = f"{len(some)} lead-ins have no room to reach the speed of the cut, which begins slower: {names}{more}"
+        count = "1 lead-in has" if len(some) == 1 else f"{len(some)} lead-ins have"
+        what = f"{count} no room to reach the speed of the cut, which begins slower: {names}{more}"
         findings.append(Finding(what, where=some[0][1].where, hint=_ROOM, kind="lead"))
     if none:
         places = ", ".join(f"contour {cut.contour} at {_at(cut)}" for cut in none[:_NAMED])
         more = f" and {len(none) - _NAMED} more" if len(none) > _NAMED else ""
-        what = f"{len(none)} cuts are pierced on the contour, where no lead-in has room: {places}{more}"
+        count = "1 cut is" if len(none) == 1 else f"{len(none)} cuts are"
+        what = f"{count} pierced on the contour, where no lead-in has room: {places}{more}"
         findings.append(Finding(what, where=none[0].where, hint=_ROOM, kind="lead"))
     return tuple(findings)
 
 
-_ROOM: Final = "leave more room between the parts, or ask for shorter leads (--lead-in)"
+_ROOM: Final = "leave more room between the parts, or lower the feed (--feed)"
 
 
 def _at(cut: Cut) -> str:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from deltacam.cutting.leads.shapes import Ends
 from deltacam.cutting.leads.sizes import Ability
-from deltacam.cutting.leads.starts import starts
+from deltacam.cutting.leads.starts import starts_off
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, BoolArray, Contour, Curve, Cut, IntArray, Process
 
@@ -76,6 +76,7 @@ def places(
     process: Process,
     beyond: Sequence[float],
     count: int,
+    clear: Mapping[int, Sequence[Curve]],
 ) -> Places:
     """All places where closed cuts may begin.
 
@@ -86,13 +87,15 @@ def places(
         process: says by which rule.
         beyond: how far each of the closed ones goes on beyond its start, m.
         count: of places per cut, where the rule leaves a choice.
+        clear: by number of contour, edges on which its cut should not begin.
     """
     drawn = {contour.number: contour for contour in contours}
     count = count if len(closed) < _MANY else _FEW
     owner, at, begins, ends = [], [], [], []
     for index, further in zip(closed, beyond, strict=True):
         cut = cuts[index]
-        segment, distance = starts(cut.curve, process.start, count=count, rounding=0.51 * process.kerf)
+        edges = clear.get(cut.contour, ())
+        segment, distance = starts_off(edges, cut.curve, process.start, count=count, kerf=process.kerf)
         side = waste_side(cut, drawn[cut.contour], process.kerf)
         line = _Line(cut.curve, side)
         owner.append(np.full(len(segment), index))

@@ -54,23 +54,28 @@ def ways(ends: Ends, size: Size) -> Array:
     return np.concatenate([arc, far[:, None]], axis=1)
 
 
-def lead_out(ends: Ends, size: Size, row: int) -> Curve | None:
-    """The lead-out of one row; None where it has no length."""
-    points, bulges = [ends.place[row]], []
-    way = ways(ends.chosen(np.array([row])), size.chosen(np.array([row])))[0]
-    if size.radius[row] * size.turn[row] > _NOTHING:
-        points.append(way[-2])
-        bulges.append(np.tan(0.25 * ends.side[row] * size.turn[row]))
-    if size.line[row] > _NOTHING:
-        points.append(way[-1])
-        bulges.append(0.0)
-    return Curve(points=np.array(points), bulges=np.array(bulges), closed=False) if bulges else None
+def lead_outs(ends: Ends, size: Size) -> list[Curve | None]:
+    """The lead-outs of all rows; None where one has no length."""
+    tips = ways(ends, size)[:, -2:]
+    arcs, lines = size.radius * size.turn > _NOTHING, size.line > _NOTHING
+    bulges = np.tan(0.25 * ends.side * size.turn)
+    found: list[Curve | None] = []
+    for place, way, arc, line, bulge in zip(ends.place, tips, arcs, lines, bulges, strict=True):
+        points, own = [place], []
+        if arc:
+            points.append(way[0])
+            own.append(bulge)
+        if line:
+            points.append(way[1])
+            own.append(0.0)
+        found.append(Curve(points=np.array(points), bulges=np.array(own), closed=False) if own else None)
+    return found
 
 
-def lead_in(ends: Ends, size: Size, row: int) -> Curve | None:
-    """The lead-in of one row, which ends at the contour; None where it has no length."""
-    found = lead_out(ends.backwards(), size, row)
-    return None if found is None else curves.reverse(found)
+def lead_ins(ends: Ends, size: Size) -> list[Curve | None]:
+    """The lead-ins of all rows, which end at the contour; None where one has no length."""
+    found = lead_outs(ends.backwards(), size)
+    return [None if one is None else curves.reverse(one) for one in found]
 
 
 def _bend(ends: Ends, size: Size) -> Array:

@@ -25,6 +25,10 @@ _SIDEWAYS: Final = 0.7
 
 _SAFE: Final = 0.95  # of the acceleration
 _LEAST_JUMP: Final = 0.25  # of what is allowed, where the contour itself bends away from the lead
+_ROUNDS: Final = 10
+_GROWTH: Final = 1.15
+_ENOUGH: Final = 0.99  # of the speed
+_WORTH: Final = 1.005
 _BLEND: Final = 0.0062  # see `motion.corners`
 _SHORTEST: Final = 1e-4  # m
 
@@ -132,6 +136,27 @@ def _radius(feed: Array, able: Ability, deviation: float, beyond: Array, *, afte
     if after_line:
         bend = np.minimum(bend, _MORE * jump)
     return np.asarray(np.maximum(np.maximum(_MORE * by_acceleration, 1.0 / bend), _SHORTEST))
+
+
+def grown(size: Size, speed: Array, able: Ability, deviation: float, beyond: Array, ahead: Array) -> Size:
+    """The sizes, larger where the tool would come too slowly and that helps; see `arrival`.
+
+    Args:
+        size: of the leads, (N,).
+        speed: that is needed, (N,) m/s.
+        able: what the tool can do there.
+        deviation: that a blend may have, m.
+        beyond: curvature of the contour as `wanted` takes it.
+        ahead: how far the contour goes on as it begins, (N,) m.
+    """
+    best, reached = size, arrival(size, able, deviation, beyond, ahead)
+    for round_ in range(1, _ROUNDS):
+        larger = size.scaled(_GROWTH**round_)
+        found = arrival(larger, able, deviation, beyond, ahead)
+        better = (reached < _ENOUGH * speed) & (found > _WORTH * reached)
+        best = Size(*(np.where(better, new, old) for new, old in zip(larger, best, strict=True)))
+        reached = np.where(better, found, reached)
+    return best
 
 
 def arrival(size: Size, able: Ability, deviation: float, beyond: Array, ahead: Array) -> Array:

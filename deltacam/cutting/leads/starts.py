@@ -2,14 +2,46 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+import shapely
 
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, Curve, IntArray, StartRule
 
 _SHARP: Final = np.radians(10.0)
+_FLATTENING: Final = 1e-6  # m
+_FINER: Final = 8  # times as many places are tried where most of a cut is not free
+
+
+def starts_off(
+    edges: Sequence[Curve], curve: Curve, rule: StartRule, *, count: int, kerf: float
+) -> tuple[IntArray, Array]:
+    """Places where a closed cut may begin, none within a kerf of some ``edges``.
+
+    Where the rule leaves none there, places are spread around the cut; and where all of it is at edges, the rule
+    counts.
+
+    Args:
+        edges: open curves, m.
+        curve: of the cut.
+        rule: as `starts` takes it.
+        count: likewise.
+        kerf: width of the cut, m.
+    """
+    rounding = 0.51 * kerf
+    found = starts(curve, rule, count=count, rounding=rounding)
+    if not edges:
+        return found
+    lines = [shapely.LineString(curves.flatten(edge, _FLATTENING)[0]) for edge in edges]
+    for segment, distance in (found, starts(curve, "best", count=_FINER * count, rounding=rounding)):
+        places = shapely.points(curves.evaluate(curve, segment, distance)[0])
+        free = shapely.distance(shapely.union_all(lines), places) > kerf
+        if free.any():
+            return segment[free], distance[free]
+    return found
 
 
 def starts(curve: Curve, rule: StartRule, *, count: int, rounding: float) -> tuple[IntArray, Array]:

@@ -133,6 +133,8 @@ def _course(process: Process) -> Iterator[Value]:
         yield Value("corner", quoted(process.corner))
     if process.passes != 1:
         yield Value("passes", str(process.passes))
+    if process.common_edges:
+        yield Value("common_edges", "true")
 
 
 def _how(process: Process) -> Iterator[Section]:

@@ -24,6 +24,7 @@ MEANINGS: Final[dict[str, str]] = {
     "start": "where a closed cut begins: best for the order, edge, corner",
     "corner": "sharp corners: round, stop, loop",
     "passes": "how often every cut is run",
+    "common_edges": "whether edges of two parts, a kerf apart, are cut once",
     "tolerance_um": "of the path",
     "chord_tolerance_um": "of the motion between ticks",
     "open": "lines that do not close: ignore, engrave, cut",

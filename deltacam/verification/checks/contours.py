@@ -8,9 +8,10 @@ import shapely
 from deltacam.model import Check, Drawing, Operation
 from deltacam.program.program import Program
 from deltacam.verification.checks.measure import at_contour, at_most, at_tick
-from deltacam.verification.comparison import Comparison
+from deltacam.verification.comparison import Comparison, Target
 from deltacam.verification.evidence import Evidence
 from deltacam.verification.runs import Run
+from deltacam.verification.sharing import burnt
 
 
 def same_drawing(program: Program, drawing: Drawing) -> Check:
@@ -38,9 +39,10 @@ def known_contours(comparison: Comparison) -> Check:
 def cut_once(comparison: Comparison) -> Check:
     """Every contour is cut or engraved exactly once: as many times as its path has rings, and it has at least one.
 
-    In a program that goes on after a stop there may be contours that are not cut again.
+    Of an outline that shares edges there are any number of cuts that do not go around instead of at least one that
+    does. In a program that goes on after a stop there may be contours that are not cut again.
     """
-    wrong = [target for target in comparison.due if len(target.runs) != len(target.rings) or not target.rings]
+    wrong = [target for target in comparison.due if not _is_cut_once(target)]
     name, unit = "every contour cut once", "contours"
     if not wrong:
         return Check(name, True, 0.0, 0.0, unit)
@@ -49,6 +51,11 @@ def cut_once(comparison: Comparison) -> Check:
     tick = first.runs[-1].first if first.runs else None
     found = at_tick(comparison.evidence, name, False, count, 0.0, unit, tick=tick, where=words)
     return at_contour(found, first.contour)
+
+
+def _is_cut_once(target: Target) -> bool:
+    around = len(target.runs) - len(target.open_runs)
+    return around < len(target.rings) if target.open_runs else around == len(target.rings) > 0
 
 
 def resumed(comparison: Comparison) -> Check:
@@ -62,10 +69,18 @@ def resumed(comparison: Comparison) -> Check:
 
 
 def closed(comparison: Comparison) -> Check:
-    """The cut of a closed contour, with its overcut, comes back to where it started."""
+    """The cut of a closed contour, with its overcut, comes back to where it started.
+
+    What is left of one that shares edges begins and ends on another cut.
+    """
     evidence = comparison.evidence
-    runs = [run for target in comparison.targets if target.contour.curve.closed for run in target.runs]
-    gaps = [_gap(evidence, run) for run in runs]
+    closed_ones = [target for target in comparison.targets if target.contour.curve.closed]
+    runs = [run for target in closed_ones for run in target.runs]
+    gaps = [
+        _away(evidence, target, run) if run in target.open_runs else _gap(evidence, run)
+        for target in closed_ones
+        for run in target.runs
+    ]
     limit, ticks = evidence.program.process.tolerance, np.array([run.end for run in runs], dtype=np.int64)
     return at_most(evidence, "gap at the end of a cut", np.array(gaps) * 1e6, limit * 1e6, "um", ticks=ticks)
 
@@ -80,6 +95,16 @@ def _gap(evidence: Evidence, run: Run) -> float:
     start = evidence.sheet[[run.first - led, run.first, run.first + led]]
     way = evidence.sheet[(run.first + run.end) // 2 : run.end + 1]
     return float(shapely.distance(shapely.LineString(start), shapely.LineString(np.concatenate([way, way[-1:]]))))
+
+
+def _away(evidence: Evidence, target: Target, run: Run) -> float:
+    """How far the ends of a run that does not go around are from other cuts, m."""
+    ways = [way for cut in target.beside for way in cut.ways]
+    ways += [way for one in target.runs if one != run for way in burnt(evidence, one)]
+    if not ways:
+        return _gap(evidence, run)
+    ends = shapely.points(evidence.sheet[[run.first, run.end]])
+    return float(shapely.distance(shapely.multilinestrings([*map(shapely.LineString, ways)]), ends).max())
 
 
 def holes_first(comparison: Comparison) -> Check:

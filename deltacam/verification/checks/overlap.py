@@ -9,8 +9,11 @@ from scipy.spatial import cKDTree
 
 from deltacam.model import Array, Check, IntArray
 from deltacam.verification.checks.measure import at_tick
-from deltacam.verification.comparison import Comparison
-from deltacam.verification.evidence import WORKING_KINDS
+from deltacam.verification.comparison import Comparison, Target
+from deltacam.verification.evidence import WORKING_KINDS, Evidence
+from deltacam.verification.kerf_path import ACCURACY
+from deltacam.verification.near import Lines
+from deltacam.verification.sharing import burnt
 
 LONGEST: Final = 1.0e-3
 """Length that may be cut again, m: less cannot be told from the ends of cuts."""
@@ -24,7 +27,8 @@ def cut_again(comparison: Comparison) -> Check:
     """How much of the way with the laser on runs where it has been before, and the drawing has nothing for it.
 
     Around every 0.1 mm of way the length of all ways is compared with that of all kerf paths: two sides of a narrow web
-    or of a sharp corner are near each other in both.
+    or of a sharp corner are near each other in both. Of an outline that shares edges its own cuts are drawn, so that an
+    edge which serves two counts once.
     """
     evidence, name, limit = comparison.evidence, "material cut twice", LONGEST * 1e3
     spans = [span for run in evidence.runs for span in evidence.stretches(run, frozenset(WORKING_KINDS))]
@@ -33,12 +37,8 @@ def cut_again(comparison: Comparison) -> Check:
     found = [_evenly(evidence.sheet[first : end + 1]) for first, end in spans]
     samples = np.concatenate([points for points, _ in found])
     ticks = np.concatenate([first + steps for (first, _), (_, steps) in zip(spans, found, strict=True)])
-    rings = [
-        np.vstack([ring, ring[:1]]) if target.contour.curve.closed else ring
-        for target in comparison.targets
-        for ring in target.rings
-    ]
-    drawn = np.concatenate([np.empty((0, 2)), *(_evenly(ring)[0] for ring in rings)])
+    near = evidence.program.process.tolerance + evidence.program.process.chord_tolerance + ACCURACY
+    drawn = np.concatenate([np.empty((0, 2)), *(_drawn(evidence, target, near) for target in comparison.targets)])
     once, passes = 2.0 * _RADIUS / _SPACING, evidence.program.process.passes
     passed = _near(samples, samples) - _AGAIN * once
     again = np.flatnonzero(passed > passes * once)
@@ -46,6 +46,17 @@ def cut_again(comparison: Comparison) -> Check:
     # Both passes are counted where they lie on each other, so that half of it is what was cut again.
     length, tick = len(again) * _SPACING * 1e3 / 2.0, int(ticks[again[-1]]) if len(again) else None
     return at_tick(evidence, name, length <= limit, length, limit, "mm", tick=tick)
+
+
+def _drawn(evidence: Evidence, target: Target, near: float) -> Array:
+    """Points along the path of a contour, (N, 2) m; of one that shares edges where its own cuts come ``near``."""
+    closed = target.contour.curve.closed
+    rings = [_evenly(np.vstack([ring, ring[:1]]) if closed else ring)[0] for ring in target.rings]
+    points = np.concatenate([np.empty((0, 2)), *rings])
+    if not target.open_runs:
+        return points
+    own = Lines([way for run in target.runs for way in burnt(evidence, run)], closed=False)
+    return points[own.distance(points, exact_above=near / 2.0) <= near]
 
 
 def _near(places: Array, samples: Array) -> Array:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from deltacam.model import Array, BlockKind, Check, IntArray, Operation
+from deltacam.model import Array, BlockKind, BoolArray, Check, IntArray, Operation
 from deltacam.verification.checks.measure import at_contour, at_most, at_tick
 from deltacam.verification.comparison import Comparison, Target
 from deltacam.verification.evidence import MOVING_KINDS, Evidence, to_sheet
 from deltacam.verification.kerf_path import ACCURACY, all_corners, flattened, sharp_corners
-from deltacam.verification.near import Lines
+from deltacam.verification.near import SPACING, Lines
+from deltacam.verification.sharing import Beside
 from deltacam.verification.way import motion
 
 _LOOPS: Final = frozenset({BlockKind.LOOP})
@@ -44,6 +46,8 @@ def deviation_between(comparison: Comparison) -> Check:
 def uncut(comparison: Comparison) -> Check:
     """How much of the path no cut or engraving comes near, in total; nothing may stay.
 
+    Where outlines share an edge, one cut serves both.
+
     Near is the tolerance of the path and of its chords. A corner that is rounded within the tolerance stays further
     from its tip, by the inverse of the sine of half the angle between its sides.
     """
@@ -69,6 +73,9 @@ def cut_length(comparison: Comparison) -> Check:
         passes = process.passes if target.contour.operation is Operation.CUT else 1
         nominal = passes * sum(_length(line) for line in closed)
         length, unclear = _length_along(comparison.evidence, target)
+        if target.open_runs:
+            own, more = _own_length(comparison.evidence, target)
+            nominal, unclear = passes * own, unclear + passes * more
         off = max(abs(length - nominal) - slack - unclear, 0.0) / nominal if nominal else float(length > 0.0)
         percent = 100.0 * off
         if target.runs and percent > (worst.worst or 0.0):
@@ -90,6 +97,22 @@ def _length_along(evidence: Evidence, target: Target) -> tuple[float, float]:
             beside = [first - 1] * (first > run.begin) + [end - 1]
             unclear += float(evidence.speed[beside].sum()) / evidence.rate
     return length, unclear
+
+
+def _own_length(evidence: Evidence, target: Target) -> tuple[float, float]:
+    """How much of its path the cuts of a contour come near, and how far that is unclear at their ends, m."""
+    process = evidence.program.process
+    near = process.tolerance + process.chord_tolerance + ACCURACY
+    mine = own_part(evidence, target, near)
+    own = 0.0 if target.path is None else float(target.path.share[mine].sum())
+    return own, 2.0 * len(target.runs) * (near + SPACING)
+
+
+def own_part(evidence: Evidence, target: Target, near: float) -> BoolArray:
+    """Which samples of its path the cuts of a contour come ``near``, m."""
+    samples = np.empty((0, 2)) if target.path is None else target.path.samples
+    cuts = [span for run in target.runs for span in evidence.stretches(run, MOVING_KINDS)]
+    return np.asarray(_lines(evidence, cuts, near).distance(samples, exact_above=near / 2.0) <= near)
 
 
 def _length_slack(target: Target) -> float:
@@ -139,13 +162,13 @@ def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tupl
     cuts = [span for run in target.runs for span in evidence.stretches(run, MOVING_KINDS)]
     if not cuts:
         return float(share.sum()), (float(samples[0, 0]), float(samples[0, 1]))
-    distance = _lines(evidence, cuts, near).distance(samples, exact_above=near / 2.0)
+    distance = _lines(evidence, cuts, near, target.beside).distance(samples, exact_above=near / 2.0)
     left = np.flatnonzero(distance > near)
     tabs = [span for run in target.runs for span in evidence.stretches(run, _TABS)]
     if tabs and len(left):
         left = left[_lines(evidence, tabs, near).distance(samples[left], exact_above=near / 2.0) > near]
     left = left[~_in_rounded_corner(target, samples[left], distance[left], near)]
-    if any(evidence.stretches(run, _LOOPS) for run in target.runs):
+    if target.open_runs or any(evidence.stretches(run, _LOOPS) for run in target.runs):
         left = left[~_burnt_at_corner(evidence, target, samples[left], distance[left], near)]
     if not len(left):
         return 0.0, (0.0, 0.0)
@@ -155,18 +178,22 @@ def _uncut(evidence: Evidence, target: Target, near: float) -> tuple[float, tupl
 def _burnt_at_corner(evidence: Evidence, target: Target, points: Array, distance: Array, near: float) -> np.ndarray:
     """Which ``points`` (M, 2) of a round about a drawn corner are burnt by the beam, whose way passes at ``distance``.
 
-    A loop goes straight on where the path turns about the corner, and back from the other side.
+    A loop goes straight on where the path turns about the corner, and back from the other side. Where both sides of a
+    corner are shared, two cuts end where the round begins and ends: its middle is then further away, and `parts_free`
+    looks at what is left there.
     """
     half = evidence.program.process.kerf / 2.0
-    tips, _ = sharp_corners(flattened(target.contour), closed=target.contour.curve.closed)
+    tips, turns = sharp_corners(flattened(target.contour), closed=target.contour.curve.closed)
     if not len(points) or not len(tips):
         return np.zeros(len(points), dtype=bool)
-    away, _ = cKDTree(tips).query(points)
-    return np.asarray((away <= half + near) & (distance <= half))
+    away, tip = cKDTree(tips).query(points)
+    reach = np.maximum(half, 2.0 * half * np.sin(turns[tip] / 4.0) + near) if target.open_runs else half
+    return np.asarray((away <= half + near) & (distance <= reach))
 
 
-def _lines(evidence: Evidence, spans: list[tuple[int, int]], near: float) -> Lines:
-    return Lines([motion(evidence, first, end, near / 8.0) for first, end in spans], closed=False)
+def _lines(evidence: Evidence, spans: list[tuple[int, int]], near: float, others: Sequence[Beside] = ()) -> Lines:
+    ways = [motion(evidence, first, end, near / 8.0) for first, end in spans]
+    return Lines([*ways, *(way for cut in others for way in cut.ways)], closed=False)
 
 
 def _in_rounded_corner(target: Target, points: Array, distance: Array, near: float) -> np.ndarray:

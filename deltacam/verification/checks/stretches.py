@@ -54,7 +54,7 @@ def in_order(evidence: Evidence) -> Check:
 def overcut(comparison: Comparison) -> Check:
     """The overcut of every closed cut is as long as the process says; the laser goes off at a tick, so up to two later.
 
-    Where a cut is shorter than the overcut, it goes round once.
+    Where a cut is shorter than the overcut, it goes round once. One that does not go around has none.
     """
     evidence = comparison.evidence
     wanted, name = evidence.program.process.overcut, "overcut"
@@ -66,8 +66,10 @@ def overcut(comparison: Comparison) -> Check:
         around = [float(np.hypot(*(np.roll(ring, -1, axis=0) - ring).T).sum()) for ring in target.rings]
         for run in target.runs if len(evidence.speed) else ():
             length, step = _overcut_of(evidence, run)
-            least = min(wanted, min(around, default=wanted))
-            off.append(max(least - length - step, length - wanted - max(step, at_feed) - step, 0.0))
+            least, most = min(wanted, min(around, default=wanted)), wanted
+            if run in target.open_runs:
+                least = most = 0.0
+            off.append(max(least - length - step, length - most - max(step, at_feed) - step, 0.0))
             ticks.append(run.end - 1)
     limit = 1e6 * (evidence.program.process.tolerance + evidence.program.process.chord_tolerance)
     return at_most(evidence, name, 1e6 * np.array(off), limit, "um off", ticks=np.array(ticks, dtype=np.int64))

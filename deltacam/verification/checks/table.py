@@ -7,6 +7,7 @@ from typing import Final
 
 from deltacam.model import Check
 from deltacam.verification.checks import (
+    common,
     contours,
     file,
     heat,
@@ -84,3 +85,6 @@ OF_CONTOURS: Final[tuple[Callable[[Comparison], Check], ...]] = (
     contours.contours_last,
 )
 """Checks that need the drawing too."""
+
+OF_COMMON_EDGES: Final[tuple[Callable[[Comparison], Check], ...]] = (common.parts_free, common.shared_first)
+"""Checks that there are besides where the process lets outlines share edges."""

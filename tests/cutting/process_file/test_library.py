@@ -9,7 +9,7 @@ from deltacam.cutting.process import DEFAULT_PROCESS, check_process, load_proces
 from deltacam.cutting.process_file.values import NOT_SAID, provenance_of, sections, worst_grade
 from deltacam.model import Lead, Process
 
-WITHOUT_LEADS = ("steel-1mm-fibre", "acrylic-3mm-co2")
+FIRST = ("steel-1mm-fibre", "acrylic-3mm-co2")
 PEOPLE_ONLY = ("name", "source", "material", "thickness_mm", "laser", "laser_power_w", "gas")
 OURS = ("tolerance_um", "chord_tolerance_um")
 LIBRARY = [load_process(name) for name in process_names()]
@@ -43,7 +43,7 @@ def test_every_value_of_a_built_in_process_says_where_it_is_from(process: Proces
 def test_the_name_of_a_built_in_process_says_what_it_is(process: Process) -> None:
     words = process.name.split("-")
     assert process.laser in words
-    if process.name not in WITHOUT_LEADS:
+    if process.name not in FIRST:
         power = f"{process.laser_power / 1e3:g}kw" if process.laser_power % 1e3 == 0 else f"{process.laser_power:g}w"
         assert power in words
     size = next(word for word in words if word.endswith("mm"))
@@ -58,14 +58,15 @@ def test_the_feed_of_a_built_in_process_is_in_its_range(process: Process) -> Non
 
 
 @pytest.mark.parametrize("process", LIBRARY, ids=lambda process: process.name)
-def test_all_but_the_first_two_built_in_processes_have_leads_an_overcut_and_a_power_law(process: Process) -> None:
-    bare = process.lead_in == Lead() and process.overcut == 0.0 and process.power_law is None
-    assert bare == (process.name in WITHOUT_LEADS)
+def test_a_built_in_process_begins_and_ends_cuts_in_the_waste_and_leaves_no_tabs(process: Process) -> None:
+    assert Lead() not in (process.lead_in, process.lead_out)
+    assert process.overcut > 0.0
+    assert (process.power_law is None) == (process.name in FIRST)
     assert process.tabs is None
 
 
 def test_the_first_two_have_the_values_that_programs_were_made_with() -> None:
-    steel, acrylic = (load_process(name) for name in WITHOUT_LEADS)
+    steel, acrylic = (load_process(name) for name in FIRST)
     assert (steel.kerf, steel.feed, steel.power, steel.pierce_time) == pytest.approx((0.15e-3, 0.15, 1.0, 0.1))
     assert (acrylic.kerf, acrylic.feed, acrylic.power, acrylic.pierce_time) == pytest.approx((0.2e-3, 0.012, 0.7, 0.2))
     assert steel.name == DEFAULT_PROCESS

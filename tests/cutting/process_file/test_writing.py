@@ -15,7 +15,7 @@ from deltacam.cutting.process_file.reading import KEYS, read_process
 from deltacam.cutting.process_file.values import GRADES, NOT_SAID, provenance_of, sections, worst_grade
 from deltacam.cutting.process_file.writing import MEANINGS, to_toml
 from deltacam.errors import ProcessError
-from deltacam.model import Gas, Process, Provenance, Rule
+from deltacam.model import Gas, Lead, Process, Provenance, Rule
 from deltacam.settings import read_table
 
 ROOT = Path(__file__).parents[3]
@@ -74,7 +74,8 @@ def test_the_feed_of_a_gas_is_written_as_the_file_states_it(tmp_path: Path) -> N
 
 
 def test_every_example_can_be_used_as_it_is(tmp_path: Path) -> None:
-    bare = replace(DEFAULT, engrave_feed=None, engrave_power=None, provenance=())
+    nothing = Lead()
+    bare = replace(DEFAULT, engrave_feed=None, engrave_power=None, provenance=(), lead_in=nothing, lead_out=nothing)
     text = to_toml(bare, examples=True)
     used = re.sub(r"^# (?=\[|\w+ =)", "", text, flags=re.MULTILINE)
     found = read(tmp_path, used)
@@ -132,4 +133,4 @@ def test_a_measured_feed_outside_of_the_range_takes_the_range_away() -> None:
 
 def test_sections_leave_out_what_is_as_it_is_by_default() -> None:
     names = [section.name for section in sections(DEFAULT)]
-    assert names == ["", "engrave", "gases.oxygen", "gases.nitrogen"]
+    assert names == ["", "engrave", "lead_in", "lead_out", "gases.oxygen", "gases.nitrogen"]
