@@ -2,12 +2,13 @@
 
 The problem is the same for all: every contour begins at one of its listed places, what is inside comes first, open
 lines before closed ones, from (0, 0) back to (0, 0), and the cost of a way is the estimated time of a rapid of
-delta-300 in whole 0.1 us. Three independent answers, and long runs of our own search; the least counts:
+delta-300 in whole 0.1 us. Independent answers, and long runs of our own search; the least counts:
 
 - up to 14 contours an exact dynamic program over sets of contours (Held and Karp 1962) with places,
 - up to 350 contours OR-tools' routing library: a node for every place, of which one per contour is visited,
 - for more OR-tools over the contours alone, each held at the place that our search chose, then the best places for
-  that sequence.
+  that sequence,
+- for nested rings also OR-tools over whole stacks, each cut from the inside to the outside in one go.
 
 Needs `pip install ortools`, and takes about half an hour; with 0 SECONDS OR-tools is left out:
 
@@ -24,10 +25,11 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.sheets import SIZES, Sheet, sheets
+from benchmarks.sheets import PLACES, SIZES, Sheet, sheets
 from deltacam.cutting.order import order, problem_of
 from deltacam.cutting.ordering.places import best_places
 from deltacam.cutting.ordering.problem import Problem
+from deltacam.cutting.precedence import Precedence
 from deltacam.robot.rapid import Rapids
 from deltacam.robot.reader import load_robot
 
@@ -130,6 +132,36 @@ def routed(problem: Problem, places: np.ndarray, seconds: float) -> list[int] | 
     return found
 
 
+def parts_at_once(problem: Problem, seconds: float) -> list[int] | None:
+    """What OR-tools finds where a part is cut at once, all of it begun at places of one number; then the best places.
+
+    None where parts are not contours in each other, one in each.
+    """
+    rule, rest = problem.rule, problem.count
+    if (rule.waiting > 1).any() or (problem.first[1:-1] - problem.first[:-2] != PLACES).any():
+        return None
+    chains = []
+    for cut in np.flatnonzero(rule.waiting == 0).tolist():
+        chain = [cut]
+        while (around := int(rule.around[chain[-1], 0])) < rest:
+            chain.append(around)
+        chains.append(chain)
+    inner, outer = (np.append(problem.first[[chain[at] for chain in chains]], -1) for at in (0, -1))
+    pick = np.arange(PLACES)
+    begins, ends = (
+        np.vstack([*(sides[one + pick] for one in ends[:-1]), sides[-1]])
+        for sides, ends in ((problem.begins, inner), (problem.ends, outer))
+    )
+    count = len(chains)
+    free = Precedence(np.zeros(count, dtype=np.int64), np.full((count + 1, 1), count))
+    none = np.zeros(count + 1, dtype=np.int64)
+    parts = Problem(begins, ends, np.append(PLACES * np.arange(count + 1), len(begins)), free, none, none, problem.cost)
+    answer = routed(parts, np.arange(len(begins)), seconds)
+    if answer is None or len(answer) != count:
+        return None
+    return best_places(problem, [cut for part in parts.owner[answer].tolist() for cut in chains[part]])
+
+
 def _keep_rule(model: object, problem: Problem, nodes: dict[int, list[int]]) -> None:
     """Tell OR-tools what comes before what: by how many places were passed."""
     pairs = [
@@ -181,6 +213,9 @@ def known(sheet: Sheet, cost: Rapids, seconds: float, tries: int, earlier: dict[
         answer = routed(problem, held, seconds)
         if answer is not None:
             found["or-tools, places held"] = best_places(problem, problem.owner[answer].tolist())
+    whole = parts_at_once(problem, seconds) if seconds and (problem.rule.waiting > 0).any() else None
+    if whole is not None:
+        found["or-tools, parts at once"] = whole
     times = {name: cost_of(problem, places) for name, places in found.items() if keeps(problem, places)}
     times = {name: round(value, 9) for name, value in times.items()}
     times = {**earlier, **{name: min(value, earlier.get(name, value)) for name, value in times.items()}}

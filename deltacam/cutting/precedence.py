@@ -24,6 +24,15 @@ class Precedence:
     waiting: IntArray
     around: IntArray
 
+    @property
+    def outermost(self) -> IntArray:
+        """The last of the cuts that come after each because they are around it, or itself, (N + 1,)."""
+        itself = np.arange(len(self.around))
+        last = np.where(self.around[:, 0] < itself[-1], self.around[:, 0], itself)
+        while (last != last[last]).any():
+            last = last[last]
+        return last
+
     @classmethod
     def between(
         cls,

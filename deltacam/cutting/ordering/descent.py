@@ -8,6 +8,7 @@ steps taken out cost is more than what the new ones cost (Lin and Kernighan 1973
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 from deltacam.cutting.ordering.way import Way
@@ -16,7 +17,8 @@ GAIN: Final = 1e-9
 """s; what saves less is rounding."""
 
 _RUN: Final = 3  # cuts of a stretch that is moved beside a near cut
-_SECOND: Final = 3  # near cuts that are tried for a second new step
+_LONGEST_PART: Final = 10  # cuts that are begun elsewhere together
+_SECOND: Final = 16  # near cuts that are tried for a second new step
 
 
 class Change(NamedTuple):
@@ -34,6 +36,7 @@ class Descent:
         self._way, self._near, self._places, self._longest = way, near, places, longest
         self._second = [[cut for cut, _ in cuts[:_SECOND]] for cuts in near]
         self._size = len(way.sequence)
+        self._nearest: dict[tuple[int, int], int] = {}
 
     def run(self, touched: Iterable[int]) -> float:
         """Change the order until nothing about the cuts touched can be made cheaper; returns what was saved."""
@@ -56,7 +59,7 @@ class Descent:
 
     def _about(self, a: int) -> Change | None:
         """Make one change about a cut, if there is one."""
-        return self._begin(a) or self._swaps(a) or self._turns_behind(a) or self._turns_before(a)
+        return self._begin(a) or self._begin_part(a) or self._swaps(a) or self._turns_behind(a) or self._turns_before(a)
 
     def _begin(self, a: int) -> Change | None:
         """Begin a cut at a better place."""
@@ -79,6 +82,47 @@ class Descent:
             return None
         way.begin(a, best)
         return Change(now - least, (before, after))
+
+    def _begin_part(self, a: int) -> Change | None:
+        """Begin a cut and those behind it that belong to its part at better places, each near to the one before."""
+        way = self._way
+        sequence, outermost, place, rows, at = way.sequence, way.outermost, way.place, way.rows, way.position[a]
+        part = outermost[a]
+        if not way.ruled or at == 0 or outermost[sequence[at - 1]] == part:
+            return None
+        end = at + 1
+        while end < self._size and end - at < _LONGEST_PART and outermost[sequence[end]] == part:
+            end += 1
+        if end - at < 2:
+            return None
+        cuts, after = sequence[at:end], place[sequence[end - self._size]]
+        row = rows[place[sequence[at - 1]]]
+        now = self._through(row, [place[cut] for cut in cuts], after)
+        chains = [self._following(cuts, first) for first in self._places[a]]
+        costs = [self._through(row, chain, after) for chain in chains]
+        least = min(costs)
+        if now - least < GAIN:
+            return None
+        for cut, new in zip(cuts, chains[costs.index(least)], strict=True):
+            way.begin(cut, new)
+        return Change(now - least, (sequence[at - 1], *cuts, sequence[end - self._size]))
+
+    def _following(self, cuts: list[int], first: int) -> list[int]:
+        """Places of cuts that follow each other: the first one's, and then always the nearest."""
+        chain, rows, nearest = [first], self._way.rows, self._nearest
+        for cut in cuts[1:]:
+            key = chain[-1], cut
+            if key not in nearest:
+                nearest[key] = min(self._places[cut], key=rows[chain[-1]].__getitem__)
+            chain.append(nearest[key])
+        return chain
+
+    def _through(self, row: dict[int, float], chain: list[int], after: int) -> float:
+        """What the steps through places cost, from one with the costs ``row`` on to one behind them."""
+        rows, cost = self._way.rows, row[chain[0]]
+        for left, reached in pairwise(chain):
+            cost += rows[left][reached]
+        return cost + rows[chain[-1]][after]
 
     def _swaps(self, a: int) -> Change | None:
         """Let two stretches change places, so that a near cut comes behind ``a``: nothing is turned."""

@@ -9,11 +9,15 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from deltacam.cutting.ordering.problem import Problem, distance
-from deltacam.model import Array, IntArray
+from deltacam.model import Array, BoolArray, IntArray
 
 NEAR: Final = 8
 """How many near cuts are tried."""
 
+_OTHER: Final = 4
+"""How many of those are tried that other parts begin with, and of those that they end with."""
+
+_PLACES: Final = 12
 _CENTRES: Final = 10
 _ROWS: Final = 500_000  # ways at a time, which bounds the memory
 _DIRECTIONS: Final = 12
@@ -34,6 +38,8 @@ def near_cuts(problem: Problem) -> list[list[tuple[int, float]]]:
     pairs, least = pairs[order], least[order]
     rank = np.arange(len(pairs)) - np.searchsorted(pairs[:, 0], pairs[:, 0])
     kept = rank < NEAR
+    for end in _ends_of_parts(problem):
+        kept |= _among_first(pairs, end[pairs[:, 1]] & _elsewhere(problem, pairs), _OTHER)
     found: list[list[tuple[int, float]]] = [[] for _ in range(count + 1)]
     for (cut, other), cost in zip(pairs[kept].tolist(), least[kept].tolist(), strict=True):
         found[cut].append((other, cost))
@@ -44,10 +50,12 @@ def _candidates(problem: Problem) -> IntArray:
     """Pairs of a cut and one that may be near, (P, 2), without repetition."""
     owner, count = problem.owner, problem.count
     middle = np.add.reduceat(problem.begins, problem.first[:-1]) / np.diff(problem.first)[:, None]
-    tree = cKDTree(middle[:-1])
-    _, around = tree.query(middle, k=min(_CENTRES, count))
-    pairs = [_pairs(np.arange(count + 1), around)]
-    few = int(np.diff(problem.first).max())
+    pairs = []
+    for some in (np.ones(count + 1, dtype=np.bool_), *_ends_of_parts(problem)):
+        of = np.flatnonzero(some[:-1])
+        _, around = cKDTree(middle[of]).query(middle, k=min(_CENTRES, len(of)))
+        pairs.append(_pairs(np.arange(count + 1), of[around]))
+    few = min(int(np.diff(problem.first).max()), _PLACES)
     places = cKDTree(problem.begins[:-1])
     for side in (problem.begins, problem.ends) if _apart(problem) else (problem.begins,):
         _, near = places.query(side, k=min(few + NEAR, places.n))
@@ -63,6 +71,31 @@ def _candidates(problem: Problem) -> IntArray:
     both = np.concatenate([both, back])
     both = both[(both[:, 0] != both[:, 1])]
     return np.unique(both, axis=0)
+
+
+def _ends_of_parts(problem: Problem) -> tuple[BoolArray, ...]:
+    """Which cuts have nothing inside, and which nothing around, (N + 1,) each; nothing where there is no rule.
+
+    A part that is cut at once is come to at one of the former, and left at one of the latter.
+    """
+    rest, rule = problem.count, problem.rule
+    if (rule.around == rest).all():
+        return ()
+    return np.append(rule.waiting == 0, False), rule.outermost == np.arange(rest + 1)
+
+
+def _elsewhere(problem: Problem, pairs: IntArray) -> BoolArray:
+    """Whether the cuts of each pair belong to different parts, (P,)."""
+    outermost = problem.rule.outermost
+    return np.asarray(outermost[pairs[:, 0]] != outermost[pairs[:, 1]])
+
+
+def _among_first(pairs: IntArray, which: BoolArray, some: int) -> BoolArray:
+    """Whether pairs are among the first ``some`` of those that count, for each first cut; (P,)."""
+    counted = np.cumsum(which)
+    start = np.searchsorted(pairs[:, 0], pairs[:, 0])
+    before = np.where(start > 0, counted[start - 1], 0)
+    return which & (counted - before <= some)
 
 
 def _apart(problem: Problem) -> bool:

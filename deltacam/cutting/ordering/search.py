@@ -13,7 +13,7 @@ from itertools import pairwise
 from random import Random
 from typing import Final
 
-from deltacam.cutting.ordering.descent import Descent
+from deltacam.cutting.ordering.descent import Change, Descent
 from deltacam.cutting.ordering.first import first_order
 from deltacam.cutting.ordering.near import near_cuts
 from deltacam.cutting.ordering.places import best_places
@@ -24,6 +24,8 @@ _SHORT: Final = 10  # the most cuts of a stretch that is swapped
 _LONG: Final = 50  # the same in other tries
 _OFTEN_SHORT: Final = 0.7  # long ones move parts with all their holes
 _LONGEST: Final = 1000  # cuts that one change moves while trying
+_TURNED: Final = 0.3  # of the tries put parts into reverse order, where some contours are inside others
+_PARTS: Final = 6
 _MOVED: Final = 0.3  # of the cuts beside a swap begin anywhere
 _FOLLOWING: Final = 8  # the most cuts behind one of them that follow suit
 _ROUNDING: Final = 1e-12  # s
@@ -65,22 +67,49 @@ class _Trial:
 
     def run(self) -> None:
         """Make one try."""
-        way, random, size = self._way, self._random, len(self._way.sequence)
+        shaken = self._turn_parts() if self._way.ruled and self._random() < _TURNED else self._swap()
+        if shaken is None:
+            self._way.undo()
+            return
+        saved, touched = shaken.saved, dict.fromkeys(shaken.beside)
+        for cut in shaken.beside:
+            if self._random() < _MOVED:
+                saved += self._begin(cut, touched)
+        if saved + self._descent.run(touched) >= -_ROUNDING:
+            self._way.keep()
+        else:
+            self._way.undo()
+
+    def _swap(self) -> Change | None:
+        """Let two stretches change places; None where the rule forbids it."""
+        random, size = self._random, len(self._way.sequence)
         longest = _SHORT if random() < _OFTEN_SHORT else _LONG
         p = 1 + int(random() * (size - 2))
         q = p + 1 + int(random() * min(longest, size - 1 - p))
         r = q + 1 + int(random() * min(longest, size - q))
-        if not way.may_swap(p, q, r):
-            return
-        change = self._descent.swap(p, q, r)
-        saved, touched = change.saved, dict.fromkeys(change.beside)
-        for cut in change.beside:
-            if random() < _MOVED:
-                saved += self._begin(cut, touched)
-        if saved + self._descent.run(touched) >= -_ROUNDING:
-            way.keep()
-        else:
-            way.undo()
+        return self._descent.swap(p, q, r) if self._way.may_swap(p, q, r) else None
+
+    def _turn_parts(self) -> Change | None:
+        """Put some parts that follow each other into reverse order, each as it is in itself; None likewise."""
+        sequence, outermost, size = self._way.sequence, self._way.outermost, len(self._way.sequence)
+        p = 1 + int(self._random() * (size - 1))
+        while p > 1 and outermost[sequence[p - 1]] == outermost[sequence[p]]:
+            p -= 1
+        ends, parts = [p], 2 + int(self._random() * _PARTS)
+        while len(ends) <= parts and ends[-1] < size:
+            r = ends[-1] + 1
+            while r < size and outermost[sequence[r]] == outermost[sequence[r - 1]]:
+                r += 1
+            ends.append(r)
+        saved, beside, r = 0.0, list[int](), ends[-1]
+        for low, high in pairwise(ends[:-1]):
+            if not self._way.may_swap(p, p + high - low, r):
+                return None
+            change = self._descent.swap(p, p + high - low, r)
+            saved += change.saved
+            beside += change.beside
+            r -= high - low
+        return Change(saved, tuple(dict.fromkeys(beside)))
 
     def _begin(self, cut: int, touched: dict[int, None]) -> float:
         """Begin a cut anywhere, and those behind where it is then nearest; what that saves, mostly below nothing."""

@@ -22,13 +22,27 @@ class Way:
         sequence: the cuts by position, the rest of all first.
         position: of every cut.
         place: of every cut.
+        ruled: whether anything must come before anything.
         rows: the costs, ``rows[left][reached]``, by places.
+        outermost: the last of the cuts that come after each cut because they are around it, or itself.
         mirror: the place that a place becomes where its cut is run the other way.
         exact: whether a stretch costs the same either way.
         made: the changes since they were last kept, as `undo` takes them.
     """
 
-    __slots__ = ("_inner", "_outer", "_ruled", "exact", "made", "mirror", "place", "position", "rows", "sequence")
+    __slots__ = (
+        "_inner",
+        "_outer",
+        "exact",
+        "made",
+        "mirror",
+        "outermost",
+        "place",
+        "position",
+        "rows",
+        "ruled",
+        "sequence",
+    )
 
     def __init__(self, problem: Problem, lookup: Lookup, places: list[int]) -> None:
         rest = problem.count
@@ -48,7 +62,8 @@ class Way:
             for around in outer:
                 inner[around].append(cut)
         self._inner = [tuple(cuts) for cuts in inner]
-        self._ruled = any(self._outer)
+        self.ruled = any(self._outer)
+        self.outermost: list[int] = problem.rule.outermost.tolist()
 
     @property
     def places(self) -> list[int]:
@@ -105,7 +120,7 @@ class Way:
 
     def may_turn(self, p: int, r: int) -> bool:
         """Whether the rule lets the stretch be run the other way."""
-        if not self._ruled:
+        if not self.ruled:
             return True
         position, outer = self.position, self._outer
         for cut in self.sequence[p:r]:
@@ -116,7 +131,7 @@ class Way:
 
     def may_swap(self, p: int, q: int, r: int) -> bool:
         """Whether the rule lets the stretches change places."""
-        if not self._ruled:
+        if not self.ruled:
             return True
         position = self.position
         if q - p <= r - q:
