@@ -25,7 +25,8 @@ def test_a_robot_has_the_time_and_the_verdict_that_planning_gives() -> None:
     assert (found.fits, found.passed, found.reason, found.rotation) == (True, True, "", 0.0)
     assert found.duration == planned.program.duration
     times = planned.report.summary["time_s"]
-    assert found.laser == pytest.approx(times["cut"] + times["pierce"], abs=0.01)
+    on = sum(times[kind] for kind in ("pierce", "lead_in", "cut", "overcut"))
+    assert found.laser == pytest.approx(on, abs=0.01)
     assert sum(share for _, share in found.binds) <= 1.0 + 1e-9
 
 

@@ -9,7 +9,7 @@ import pytest
 from deltacam.cutting.process import load_process
 from deltacam.errors import DrawingError, ProcessError
 from deltacam.examine import verify
-from deltacam.model import Mode, Operation, Process, Rule, Selection
+from deltacam.model import Lead, Mode, Operation, Process, Rule, Selection
 from deltacam.pipeline import plan, plan_to_folder
 
 
@@ -35,6 +35,7 @@ def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def process() -> Process:
     built_in = load_process("steel-1mm-fibre")
+    built_in = replace(built_in, lead_in=Lead(), lead_out=Lead(), overcut=0.0)
     return replace(built_in, rules=(*built_in.rules, Rule(Operation.CUT, color=1, open=Operation.CUT)))
 
 

@@ -6,16 +6,18 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import shapely
 
+from deltacam.cutting.process import load_process
 from deltacam.errors import DeltacamError, DrawingError, InfeasibleError, ProcessError, ProgramError, RobotError
 from deltacam.examine import verify
 from deltacam.geometry import curve as curves
-from deltacam.model import BlockKind, Mode
+from deltacam.model import BlockKind, Lead, Mode
 from deltacam.pipeline import Outputs, Planned, plan, plan_to_folder
 from deltacam.program.formats import read_program
 from deltacam.report.text import to_text
@@ -112,10 +114,6 @@ def test_a_dry_run_and_a_frame_keep_the_laser_off(drone: Planned) -> None:
 
 @pytest.mark.parametrize("corner", ["round", "stop"])
 def test_both_ways_to_take_a_corner_verify(corner: str) -> None:
-    from dataclasses import replace
-
-    from deltacam.cutting.process import load_process
-
     process = replace(load_process("acrylic-3mm-co2"), corner=corner, feed=0.2)
     assert plan(DXF / "gear-logo-inkscape.dxf", unit="mm", process=process).report.passed
 
@@ -126,8 +124,10 @@ def test_a_turned_and_moved_part_verifies() -> None:
     assert planned.program.placement.rotation == pytest.approx(37.0 * DEG)
 
 
-def test_the_first_cut_begins_at_its_point_nearest_to_the_park_position() -> None:
-    planned = plan(DXF / "channel-bulge-inch.dxf", robot="irb360-1600", at=(0.2, -0.1), rotation=0.7)
+def test_without_leads_the_first_cut_begins_at_its_point_nearest_in_time_to_the_park_position() -> None:
+    process = replace(load_process("steel-1mm-fibre"), lead_in=Lead(), lead_out=Lead(), overcut=0.0)
+    options = {"robot": "irb360-1600", "at": (0.2, -0.1), "rotation": 0.7, "process": process}
+    planned = plan(DXF / "channel-bulge-inch.dxf", **options)
     program = planned.program
     where = program.placement
     (contour,) = planned.drawing.contours
@@ -135,7 +135,8 @@ def test_the_first_cut_begins_at_its_point_nearest_to_the_park_position() -> Non
     path = shapely.Polygon(curves.flatten(placed, 1e-7)[0]).buffer(program.process.kerf / 2.0, quad_segs=48).exterior
     pierce = program.robot.forward(program.q[[program.blocks[1].first]])[0, :2]
     park = program.robot.workspace.park
-    assert np.hypot(*(pierce - park)) == pytest.approx(path.distance(shapely.Point(park)), abs=1e-6)
+    # The robot is not as fast in all directions, so that the nearest in time is not quite the nearest.
+    assert np.hypot(*(pierce - park)) == pytest.approx(path.distance(shapely.Point(park)), rel=0.03)
 
 
 @pytest.mark.parametrize(
@@ -164,10 +165,6 @@ def test_a_failed_plan_leaves_no_program_of_an_earlier_run(
 
 
 def test_a_tolerance_below_the_error_of_reading_is_refused_with_the_least_that_works() -> None:
-    from dataclasses import replace
-
-    from deltacam.cutting.process import load_process
-
     process = load_process("steel-1mm-fibre")
     with pytest.raises(InfeasibleError, match="only known to within") as caught:
         plan(DXF / "gear-unitless.dxf", unit="in", robot="irb360-1600", process=replace(process, tolerance=2e-6))

@@ -83,7 +83,7 @@ def _chain() -> list[str]:
     """The direction along a circle that was flattened, and along the arcs that replace its chords."""
     angle = 2.0 * np.pi * np.arange(CHORDS) / CHORDS
     chain = curves.polygon(RADIUS * np.stack([np.cos(angle), np.sin(angle)], axis=1))
-    found, off = fit(chain, allowance=CHAINS * DEVIATION)
+    found, off, _ = fit(chain, allowance=CHAINS * DEVIATION)
     length, heading = curves.lengths(chain)[:_SHOWN] * 1e3, np.degrees(curves.headings(chain)[0][:_SHOWN])
     ends = np.cumsum(length)
     steps = np.stack([ends - length, ends], axis=1).ravel(), np.repeat(heading, 2)

@@ -43,7 +43,8 @@ def test_a_part_has_the_program_and_the_report_that_plan_writes(tmp_path: Path) 
     assert facts.size == pytest.approx((0.012, 0.008))
     assert (facts.contours, facts.failed) == (2, ())
     assert facts.time > 0.1
-    assert facts.cut_length == pytest.approx(0.04 + 2e-3 * 3.1416, rel=0.05)
+    drawn = 0.04 + 2e-3 * 3.1416  # to which the leads and the overcuts of two contours come
+    assert drawn < facts.cut_length < drawn + 2 * 4e-3
     assert (result.outcome.robot, result.outcome.process) == ("delta-300", "steel-1mm-fibre")
 
 

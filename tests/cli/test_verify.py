@@ -53,9 +53,9 @@ def test_several_programs_are_verified_with_their_own_drawings(folder: Path) -> 
     assert (run.returncode, run.stderr) == (0, "")
     assert [line for line in run.stdout.splitlines() if line.startswith(("PASSED", "new/"))] == [
         "new/bracket.program.csv:",
-        "PASSED  bracket.dxf (cut): all 46 checks",
+        "PASSED  bracket.dxf (cut): all 52 checks",
         "new/gear.program.csv:",
-        "PASSED  gear.dxf (cut): all 46 checks",
+        "PASSED  gear.dxf (cut): all 52 checks",
     ]
     assert run.stdout.endswith("2 of 2 programs passed\n")
 
@@ -96,7 +96,7 @@ def test_strict_fails_where_a_check_warns(tmp_path: Path) -> None:
     drawing, program = SAMPLES / "bracket.dxf", "bracket.program.csv"
     planned = deltacam("plan", drawing, "--robot", "cubic.toml", folder=tmp_path)
     assert planned.returncode == 0, planned.stdout
-    assert "45 of 46 checks; warning: joint acceleration between ticks" in planned.stdout
+    assert "51 of 52 checks; warning: joint acceleration between ticks" in planned.stdout
     assert deltacam("verify", program, "--drawing", drawing, folder=tmp_path).returncode == 0
     strict = deltacam("verify", program, "--drawing", drawing, "--strict", "--json", folder=tmp_path)
     found = json.loads(strict.stdout)
