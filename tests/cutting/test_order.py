@@ -229,3 +229,11 @@ def test_more_time_means_more_tries_and_few_contours_need_few() -> None:
     efforts = [module.default_effort(count) for count in (1, 10, 50, 100, 1000, 20_000)]
     assert efforts == sorted(efforts)
     assert efforts[2] <= 300
+
+
+def test_parts_that_stay_together_come_after_those_that_they_wait_for() -> None:
+    # The hole of part 1 is nearest, but all of part 1 waits for part 2, which shares an edge with it.
+    cuts = [ring(1, 0.05, 0.0, 0.02), ring(2, 0.15, 0.0, 0.02), ring(3, 0.05, 0.0), ring(4, 0.15, 0.0)]
+    parents = {1: None, 2: None, 3: 1, 4: 2}
+    ordered = order(cuts, parents=parents, after={1: [2]}, start=(0.0, 0.0), together=True)
+    assert [cut.contour for cut in ordered] == [4, 2, 3, 1]

@@ -28,10 +28,21 @@ def first_order(problem: Problem) -> list[int]:
         near = _Near(problem, left)
         while left.any():
             near = near.renewed(left)
-            part = left & (parts == parts[owner[near.place(left, walk.ready, walk.at)]])
+            whole = _whole(problem, left)
+            if not whole.any():  # parts wait for each other: they cannot stay together
+                walk.run(left)
+                break
+            part = whole & (parts == parts[owner[near.place(whole, walk.ready, walk.at)]])
             walk.run(part)
             left &= ~part
     return walk.chosen
+
+
+def _whole(problem: Problem, left: BoolArray) -> BoolArray:
+    """The cuts, of those ``left``, of parts that wait for nothing that is left of another part, (N,)."""
+    around, part = problem.rule.around[:-1], problem.part
+    waits = around[left[:, None] & (around < problem.count) & (part[around] != part[:-1, None])]
+    return left & ~np.isin(part[:-1], part[waits])
 
 
 class _Walk:
