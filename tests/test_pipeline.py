@@ -214,3 +214,8 @@ def test_a_frame_goes_around_the_leads_too(drone: Planned) -> None:
     on = np.isin([drone.program.blocks[index].kind for index in drone.program.block], ["lead_in", "cut", "lead_out"])
     assert (inside[on].min(axis=0) > around.min(axis=0) - 50e-6).all()
     assert (inside[on].max(axis=0) < around.max(axis=0) + 50e-6).all()
+
+
+def test_leads_stay_inside_holes_whose_outline_is_not_cut() -> None:
+    planned = plan(DXF / "switch-mount-duplicates.dxf", what_if=False)
+    assert planned.report.passed, [check for check in planned.report.checks if not check.passed]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -17,10 +17,14 @@ SLACK: Final = 3e-6
 """How far a way may come too near to a part, m: above the errors of reading and flattening."""
 
 _FLATTENING: Final = 1e-6
+_RIM: Final = 50e-3  # m, wider than leads are long
 
 
 def finished_parts(contours: Sequence[Contour]) -> npt.NDArray[np.object_]:
-    """What is to stay of the sheet, (P,) polygons: every outline that is cut, without the holes directly in it."""
+    """What is to stay of the sheet, (P,) polygons: every outline that is cut, without the holes directly in it.
+
+    Around a hole whose outline is not cut that is all there is nearby.
+    """
     cut = {contour.number: contour for contour in contours if contour.has_kerf}
     lines = {number: curves.flatten(contour.curve, _FLATTENING)[0] for number, contour in cut.items()}
     holes: defaultdict[int | None, list[Array]] = defaultdict(list)
@@ -32,7 +36,17 @@ def finished_parts(contours: Sequence[Contour]) -> npt.NDArray[np.object_]:
         for number, contour in cut.items()
         if not contour.is_hole and len(lines[number]) > 2
     ]
-    return np.array(found, dtype=np.object_)
+    return np.array([*found, *_rims(cut, lines)], dtype=np.object_)
+
+
+def _rims(cut: Mapping[int, Contour], lines: Mapping[int, Array]) -> list[shapely.Geometry]:
+    """The material around holes whose outline is not cut: it stays as well."""
+    areas = {number: shapely.Polygon(lines[number]) for number, one in cut.items() if one.is_hole}
+    alone = [number for number in areas if cut[number].parent not in cut]
+    if not alone:
+        return []
+    waste = shapely.union_all(list(areas.values()))
+    return [shapely.difference(shapely.buffer(areas[number], _RIM), waste) for number in alone]
 
 
 class Waste:
