@@ -24,8 +24,8 @@ from deltacam import pipeline
 from deltacam.cutting import kerf
 from deltacam.cutting.leads.approaches import approaches
 from deltacam.cutting.leads.reach import Reach
-from deltacam.cutting.leads.waste import Waste
 from deltacam.cutting.process import load_process
+from deltacam.cutting.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, BlockKind, Contour, Curve, Cut, Lead, Placement, Process, Stretch
 from deltacam.motion import setpoints
@@ -404,7 +404,7 @@ def cost(counts: tuple[int, ...]) -> Iterator[tuple[int, float]]:
             cuts.append(replace(path, contour=number, curve=curves.transform(path.curve, shift=shift)))
         reach = Reach(robot, where)
         start = time.perf_counter()
-        waste = Waste(contours, kerf=process.kerf, is_allowed=reach.is_allowed)
+        waste = Waste(contours, kerf=process.kerf, room=reach.area())
         approaches(cuts, contours, process=process, waste=waste, able=reach.able, tick=reach.tick)
         yield count, time.perf_counter() - start
 

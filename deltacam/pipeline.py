@@ -236,7 +236,7 @@ def _program(part: Drawing, how: _How) -> tuple[Program, tuple[Held, ...], tuple
     """The program of a drawing, what holds it back, and what a person should know about it."""
     robot, process = how.robot, how.process
     if any(contour.operation is Operation.ENGRAVE for contour in part.contours):
-        setpoints.engraving(process)  # refuses now rather than after everything else
+        setpoints.engraving_feed(process)  # refuses now rather than after everything else
     where = placement.place(part.contours, robot=robot, at=how.at, rotation=how.rotation)
     how.progress("kerf", 0, 1)
     shifted = kerf.offset(part.contours, kerf=process.kerf)
@@ -268,7 +268,7 @@ def _placed(part: Drawing, how: _How, by: By) -> Found:
     """The places and turns at which a drawing is cut best."""
     robot, process = how.robot, how.process
     if any(contour.operation is Operation.ENGRAVE for contour in part.contours):
-        setpoints.engraving(process)
+        setpoints.engraving_feed(process)
     how.progress("kerf", 0, 1)
     cuts = kerf.offset(part.contours, kerf=process.kerf).cuts
     footprint = placement.footprint(cuts, part.contours)

@@ -24,6 +24,13 @@ if TYPE_CHECKING:
 @planning_options
 @how_options
 @click.option(
+    "--start-at",
+    "starts",
+    metavar="X,Y",
+    multiple=True,
+    help="Let the closed contour at this place of the drawing, mm, begin there; may be repeated.",
+)
+@click.option(
     "--from-contour", type=click.IntRange(1), metavar="N", help="Go on after a stop: leave out what comes before it."
 )
 @click.option("--jobs", type=JOBS, help="Processes for planning; the result is the same. 0: as many as pay.")
@@ -41,6 +48,7 @@ def command(
     order_seed: int,
     parts_together: bool,
     what_if: bool | None,
+    starts: tuple[str, ...],
     from_contour: int | None,
     jobs: int | None,
     as_json: bool,
@@ -72,6 +80,7 @@ def command(
         dry_run=dry_run,
         frame=frame,
         what_if=what_if,
+        starts=starts,
     )
     with ProgressLine() as progress:
         planned, outputs = plan_to_folder(

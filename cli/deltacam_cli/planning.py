@@ -84,6 +84,7 @@ def how(
     dry_run: bool,
     frame: bool,
     what_if: bool | None,
+    starts: tuple[str, ...] = (),
 ) -> dict[str, Any]:
     """What `how_options` say, as the pipeline takes it.
 
@@ -105,7 +106,7 @@ def how(
     found = {"place": "both" if place == "auto" else place}
     return {
         "mode": Mode.FRAME if frame else Mode.DRY_RUN if dry_run else Mode.CUT,
-        "search": Search(time, order_seed, parts_together),
+        "search": Search(time, order_seed, parts_together, tuple(options.place("--start-at", one) for one in starts)),
         "what_if": what_if,
         **(given if place is None else found),
     }

@@ -16,13 +16,13 @@ convex, and a smaller loop lies within a larger one; where no beam may come near
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
+from deltacam.cutting.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, BlockKind, BoolArray, Contour, Curve, Finding, IntArray, Loops, Stretch
 from deltacam.units import to_mm
@@ -34,7 +34,6 @@ SHARPEST: Final = np.radians(170.0)
 
 _SMALLER: Final = 0.8 ** np.arange(8)  # of the radius that is needed: what is tried
 _FLATTENING: Final = 1e-6  # m
-_SLACK: Final = 3e-6  # m; above the errors of reading and flattening
 _NEAR: Final = 3e-6  # m; how far the ends of a round may be from where the drawing says they are
 _ALONG: Final = 0.02  # rad; how far the path may leave the directions of the drawing there
 _NAMED: Final = 3  # places in a finding
@@ -47,26 +46,12 @@ class Looped(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Waste:
-    """Where loops may run.
-
-    Attributes:
-        parts: the edges of everything that stays, as lines or as areas, m.
-        room: what the loops may not leave, m; None where they may go anywhere.
-        clearance: the beam's centre keeps so far away from ``parts``, m: half the kerf.
-    """
-
-    parts: shapely.STRtree
-    room: shapely.Geometry | None
-    clearance: float
-
-
 def with_loops(
     way: Sequence[Stretch],
     contour: Contour,
     *,
     side: Side,
+    kerf: float,
     rule: Loops,
     needed: Callable[[Array], float],
     waste: Waste,
@@ -81,6 +66,7 @@ def with_loops(
         way: of a cut along the contour's kerf path, from its beginning to its end; sheet frame, m.
         contour: what was drawn.
         side: where the waste is, seen along the way.
+        kerf: width of the cut, m, >= 0.
         rule: which corners, and the radius if that is given.
         needed: the radius, m, > 0, that the speed needs at a place, (2,) m.
         waste: where loops may run.
@@ -98,7 +84,7 @@ def with_loops(
         if stretch.kind is not BlockKind.CUT:
             stretches.append(stretch)
             continue
-        found = _found(stretch.curve, corners, waste.clearance)
+        found = _found(stretch.curve, corners, kerf / 2.0)
         wanted = [rule.radius or needed(crossing) for crossing in found.crossings]
         radii = _fitting(found, np.array(wanted), waste)
         stretches += _split(stretch.curve, found, radii)
@@ -188,12 +174,15 @@ def _fitting(found: _Found, wanted: Array, waste: Waste) -> Array:
     possible = np.abs(found.turns) <= SHARPEST
     possible[1:] &= apart
     possible[:-1] &= apart
-    left = np.flatnonzero(possible & _reached(found, waste))
+    # The lines from the round to the crossing and back must be free, whatever the radius.
+    possible &= waste.is_free(shapely.linestrings(np.stack([found.before, found.crossings, found.after], axis=1)))
+    left = np.flatnonzero(possible)
     for share in _SMALLER:
         if not len(left):
             break
         tried = share * wanted[left]
-        fits = _fits([_cone(found, k, radius) for k, radius in zip(left.tolist(), tried.tolist(), strict=True)], waste)
+        cones = [_cone(found, k, radius) for k, radius in zip(left.tolist(), tried.tolist(), strict=True)]
+        fits = waste.is_free(np.array([shapely.Polygon(curves.flatten(cone, _FLATTENING)[0]) for cone in cones]))
         radii[left[fits]] = tried[fits]
         left = left[~fits]
     return radii
@@ -211,27 +200,6 @@ def _cone(found: _Found, k: int, radius: float) -> Curve:
         points=np.stack([tip, tip + reach * coming, far, tip - reach * going]),
         bulges=np.array([0.0, bulge, bulge, 0.0]),
     )
-
-
-def _reached(found: _Found, waste: Waste) -> BoolArray:
-    """At which corners the lines from the round to the crossing and back keep clear of all parts, (K,)."""
-    reached = np.ones(len(found.turns), dtype=np.bool_)
-    if waste.clearance > _SLACK:
-        ways = shapely.linestrings(np.stack([found.before, found.crossings, found.after], axis=1))
-        near = waste.parts.query(ways, predicate="dwithin", distance=waste.clearance - _SLACK)
-        reached[near[0]] = False
-    return reached
-
-
-def _fits(cones: Sequence[Curve], waste: Waste) -> BoolArray:
-    """Which of the loops keep clear of all parts, and stay in the room, (K,)."""
-    areas = np.array([shapely.Polygon(curves.flatten(cone, _FLATTENING)[0]) for cone in cones], dtype=object)
-    fits = np.ones(len(cones), dtype=np.bool_)
-    smaller = shapely.buffer(areas, -_SLACK, join_style="mitre")
-    fits[waste.parts.query(smaller, predicate="dwithin", distance=waste.clearance)[0]] = False
-    if waste.room is not None:
-        fits &= shapely.covers(waste.room, areas)
-    return fits
 
 
 def _split(curve: Curve, found: _Found, radii: Array) -> list[Stretch]:

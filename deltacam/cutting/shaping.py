@@ -10,13 +10,12 @@ from typing import Final
 import numpy as np
 import shapely
 
-from deltacam.cutting import loops
 from deltacam.cutting.leads import sizes
-from deltacam.cutting.leads.approaches import waste_side
+from deltacam.cutting.leads.places import waste_side
 from deltacam.cutting.leads.reach import Reach
-from deltacam.cutting.leads.waste import Waste
-from deltacam.cutting.loops import with_loops
+from deltacam.cutting.loops import Side, with_loops
 from deltacam.cutting.tabs import with_tabs
+from deltacam.cutting.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, BlockKind, Contour, Curve, Cut, Finding, Operation, Process, Stretch
 
@@ -43,7 +42,6 @@ def looped(cuts: Sequence[Cut], contours: Sequence[Contour], *, process: Process
     if process.corner != "loop":
         return tuple(cuts), ()
     drawn = {contour.number: contour for contour in contours}
-    room = loops.Waste(shapely.STRtree(waste.parts), reach.area(), process.kerf / 2.0)
     done, findings = [], list[Finding]()
     for cut in cuts:
         contour = drawn[cut.contour]
@@ -55,8 +53,10 @@ def looped(cuts: Sequence[Cut], contours: Sequence[Contour], *, process: Process
         def needed(place: Array, feed: Array = feed) -> float:
             return float(sizes.bend(feed, reach.able(place[None]), BLENDED * process.tolerance)[0])
 
-        side: loops.Side = "left" if waste_side(cut, contour, process.kerf) > 0.0 else "right"
-        found = with_loops(way_of(cut), contour, side=side, rule=process.loops, needed=needed, waste=room)
+        side: Side = "left" if waste_side(cut, contour, process.kerf) > 0.0 else "right"
+        found = with_loops(
+            way_of(cut), contour, side=side, kerf=process.kerf, rule=process.loops, needed=needed, waste=waste
+        )
         done.append(replace(cut, way=found.way))
         findings += found.findings
     return tuple(done), _few(findings)
@@ -91,7 +91,7 @@ def tabbed(
             continue
         near = tree.query(shapely.buffer(shapely.box(*lines[index].bounds), 2.0 * (rule.width + process.kerf)))
         others = shapely.STRtree(lines[near[near != index]])
-        side: loops.Side = "left" if waste_side(cut, contour, process.kerf) > 0.0 else "right"
+        side: Side = "left" if waste_side(cut, contour, process.kerf) > 0.0 else "right"
         edges = clear.get(cut.contour, ())
         found = with_tabs(way_of(cut), contour, side=side, kerf=process.kerf, rule=rule, others=others, clear=edges)
         done.append(replace(cut, way=found.way))

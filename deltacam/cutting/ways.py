@@ -16,10 +16,11 @@ import numpy as np
 from deltacam.cutting import feeds
 from deltacam.cutting.leads.approaches import Approach, approaches, begun, has_leads
 from deltacam.cutting.leads.reach import Reach
-from deltacam.cutting.leads.waste import Waste
+from deltacam.cutting.leads.starts import given_starts
 from deltacam.cutting.order import Ordered, effort_for, order
 from deltacam.cutting.shaping import looped, repeated, tabbed
 from deltacam.cutting.shared import SHORTEST, Shared, share_edges
+from deltacam.cutting.waste import Waste
 from deltacam.model import Array, Contour, Cut, Finding, Placement, Process, Search
 from deltacam.robot.rapid import Rapids
 
@@ -65,15 +66,25 @@ def ways(
         process: says what leads, loops and tabs there are.
         robot: the machine, whose park position is where the program starts and ends.
         placement: of the sheet frame.
-        search: for the order.
+        search: for the order, and where cuts begin.
         progress: is told how far the order is.
+
+    Raises:
+        InfeasibleError: a cut should begin where there is none.
     """
     reach = Reach(robot, placement)
-    waste = Waste(contours, kerf=process.kerf, is_allowed=reach.is_allowed)
+    waste = Waste(contours, kerf=process.kerf, room=reach.area())
     cuts = feeds.in_holes(cuts, contours, process=process)
     cuts, after, edges, of_edges = _shared(cuts, contours, process)
     choices, of_leads = approaches(
-        cuts, contours, process=process, waste=waste, able=reach.able, tick=reach.tick, clear=edges
+        cuts,
+        contours,
+        process=process,
+        waste=waste,
+        able=reach.able,
+        tick=reach.tick,
+        clear=edges,
+        given=given_starts(search.starts, cuts, contours),
     )
     places = [
         [_spot(cut, one, process, reach.tick) for one in several] or None

@@ -102,14 +102,16 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """How the order of the cuts is looked for.
+    """How the order of the cuts is looked for, and what of it is fixed.
 
     Attributes:
         time: about how long, s; None for what usually pays.
         seed: of what is tried at random; the same gives the same order.
         together: whether all contours of a part are cut before those of the next.
+        starts: places on closed contours, m, sheet frame, where their cuts begin.
     """
 
     time: float | None = None
     seed: int = 0
     together: bool = False
+    starts: tuple[tuple[float, float], ...] = ()

@@ -61,7 +61,7 @@ def plan_motion(
         ProcessError: something is to be engraved, and the process does not say how.
         RobotError: a move leaves the reach.
     """
-    tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error, mode=mode)
+    tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error)
     found = tape.setpoints(jobs=jobs, what_if=what_if, progress=progress)
     if mode is not Mode.CUT:
         return found
@@ -73,13 +73,11 @@ def moves_of(
     cuts: Sequence[Cut], *, robot: Robot, process: Process, placement: Placement, drawing_error: float
 ) -> tuple[list[tuple[Move, bool]], int]:
     """The moves that `plan_motion` runs, each with whether it cuts or engraves, and for how many ticks it rests."""
-    tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error, mode=Mode.CUT)
+    tape = _taped(cuts, robot=robot, process=process, placement=placement, drawing_error=drawing_error)
     return tape.moves()
 
 
-def _taped(
-    cuts: Sequence[Cut], *, robot: Robot, process: Process, placement: Placement, drawing_error: float, mode: Mode
-) -> Tape:
+def _taped(cuts: Sequence[Cut], *, robot: Robot, process: Process, placement: Placement, drawing_error: float) -> Tape:
     """The tape of what `plan_motion` plans."""
     deviation = _left_for_corners(process.tolerance, drawing_error + (FIT_ALLOWANCE if process.kerf > 0.0 else 0.0))
     rapid = rapid_limits(robot)
@@ -92,11 +90,10 @@ def _taped(
     for index, cut in enumerate(cuts):
         way = ways[cut.operation]
         limits = way.limits if cut.feed is None else working_limits(robot, process, cut.feed)
-        power = way.power if mode is Mode.CUT else 0.0
         for hole in holes.get(index, ()):
             tape.travel(_in_machine(hole, placement).points[0], rapid, where=f"the way to contour {hole.contour}")
-            tape.rest(BlockKind.PIERCE, ticks=way.pierce, power=power, cut=hole)
-        _put(tape, cut, process, placement, _Own(way, limits, power, deviation, bool(holes), apart))
+            tape.rest(BlockKind.PIERCE, ticks=way.pierce, cut=hole)
+        _put(tape, cut, process, placement, _Own(way, limits, deviation, bool(holes), apart))
     tape.travel(np.array(robot.workspace.park), rapid, where="the way back to the park position")
     tape.rest(BlockKind.RAPID, ticks=2)
     return tape
@@ -107,7 +104,6 @@ class _Own(NamedTuple):
 
     way: _Way
     limits: Limits
-    power: float
     deviation: float
     is_pierced: bool
     apart: int
@@ -124,11 +120,11 @@ def _put(tape: Tape, cut: Cut, process: Process, placement: Placement, own: _Own
             pierce = 0 if own.is_pierced and number == 0 else own.way.pierce
             tape.travel(curve.points[0], rapid, where=f"the way to contour {cut.contour}")
             tape.rest(BlockKind.RAPID, ticks=0 if number else _ticks(cut.wait, robot))
-            tape.rest(BlockKind.PIERCE, ticks=pierce, power=own.power, cut=cut)
+            tape.rest(BlockKind.PIERCE, ticks=pierce, cut=cut)
             tape.rest(before, ticks=0 if pierce else own.apart, cut=cut if number else None)
         pace = _pace(robot, own.limits, (*curve.points[0], placement.z))
         drawn = Drawn(curve, part.stretch, part.speed, process.corner, own.deviation, pace, placement.z)
-        tape.work(drawn, own.limits, power=own.power, cut=cut)
+        tape.work(drawn, own.limits, cut=cut)
         # A lead-out behind a cut without an overcut may be passed within a tick: then its end must not count as cut.
         beside = part.stretch[-1] == NUMBER[BlockKind.LEAD_OUT] and process.overcut == 0.0
         tape.rest(BlockKind.LEAD_OUT, ticks=1 if beside else 0, cut=cut)
@@ -185,11 +181,11 @@ def working_limits(robot: Robot, process: Process, feed: float) -> Limits:
     )
 
 
-def engraving(process: Process) -> tuple[float, float]:
-    """The feed, m/s, and the power of engraving.
+def engraving_feed(process: Process) -> float:
+    """The feed of engraving, m/s.
 
     Raises:
-        ProcessError: the process does not say them.
+        ProcessError: the process does not say it, or not the power.
     """
     if process.engrave_feed is None or process.engrave_power is None:
         raise ProcessError(
@@ -198,14 +194,13 @@ def engraving(process: Process) -> tuple[float, float]:
             hint="add a section [engrave] with feed_m_min and power to the process file, or say with --ignore-layer or "
             "with [[operations]] in the process file that these lines are not engraved",
         )
-    return process.engrave_feed, process.engrave_power
+    return process.engrave_feed
 
 
 class _Way(NamedTuple):
-    """How a cut is run: its limits, its power, and for how many ticks it is pierced before."""
+    """How a cut is run: its limits, and for how many ticks it is pierced before."""
 
     limits: Limits
-    power: float
     pierce: int
 
 
@@ -222,10 +217,9 @@ def _pace(robot: Robot, limits: Limits, place: tuple[float, float, float]) -> Pa
 def _way(operation: Operation, robot: Robot, process: Process) -> _Way:
     """How cuts of an operation are run."""
     if operation is Operation.ENGRAVE:
-        feed, power = engraving(process)
-        return _Way(working_limits(robot, process, feed), power, 0)
+        return _Way(working_limits(robot, process, engraving_feed(process)), 0)
     pierce = _ticks(process.pierce_time, robot)
-    return _Way(working_limits(robot, process, process.feed), process.power, pierce)
+    return _Way(working_limits(robot, process, process.feed), pierce)
 
 
 def _ticks(time: float, robot: Robot) -> int:

@@ -24,7 +24,6 @@ KINDS: Final = tuple(
 
 NUMBER: Final = {kind: number for number, kind in enumerate(KINDS)}
 
-_DARK: Final = (NUMBER[BlockKind.TAB], NUMBER[BlockKind.LEAD_OUT])
 _HERE: Final = 1e-9
 
 
@@ -55,11 +54,10 @@ class _Rest(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """What a rest or a move is for: what is done, None where a move has stretches, the laser's power, and the cut."""
+    """What a rest or a move is for: what is done, None where a move has stretches, and the cut."""
 
     motion: _Rest | Move
     kind: BlockKind | None
-    power: float
     cut: Cut | None
 
 
@@ -72,19 +70,19 @@ class Tape:
     z: float
     _steps: list[_Step] = field(default_factory=list)
 
-    def rest(self, kind: BlockKind, *, ticks: int, power: float = 0.0, cut: Cut | None = None) -> None:
+    def rest(self, kind: BlockKind, *, ticks: int, cut: Cut | None = None) -> None:
         """Hold the present place for a number of ticks; none is nothing."""
         if ticks:
-            self._steps.append(_Step(_Rest(self.place, ticks), kind, power, cut))
+            self._steps.append(_Step(_Rest(self.place, ticks), kind, cut))
 
     def travel(self, end: Array, limits: Limits, *, where: str) -> None:
-        """Go straight to ``end``, (2,) m, with the laser off; nothing where the tool is there."""
+        """Go straight to ``end``, (2,) m; nothing where the tool is there."""
         if np.hypot(*(end - self.place)) > _HERE:
             self._run(straight(self.place, end, self.z), end, limits, BlockKind.RAPID, where)
 
-    def work(self, drawn: Drawn, limits: Limits, *, power: float, cut: Cut) -> None:
+    def work(self, drawn: Drawn, limits: Limits, *, cut: Cut) -> None:
         """Run along a part of a cut from rest to rest; its segments say what is done."""
-        self._run(drawn, drawn.curve.ends[-1], limits, None, cut.where, power=power, cut=cut)
+        self._run(drawn, drawn.curve.ends[-1], limits, None, cut.where, cut=cut)
 
     def _run(
         self,
@@ -94,10 +92,9 @@ class Tape:
         kind: BlockKind | None,
         where: str,
         *,
-        power: float = 0.0,
         cut: Cut | None = None,
     ) -> None:
-        self._steps.append(_Step(Move(path, limits, where), kind, power, cut))
+        self._steps.append(_Step(Move(path, limits, where), kind, cut))
         self.place = end
 
     def moves(self) -> tuple[list[tuple[Move, bool]], int]:
@@ -106,7 +103,7 @@ class Tape:
         return moves, sum(step.motion.ticks for step in self._steps if isinstance(step.motion, _Rest))
 
     def setpoints(self, *, jobs: int | None, what_if: bool | None, progress: Callable[[int, int], None]) -> Setpoints:
-        """Everything that was put on the tape, at every tick."""
+        """Everything that was put on the tape, at every tick, with the laser off."""
         moves = [step for step in self._steps if isinstance(step.motion, Move)]
         cuts = np.cumsum([step.cut is not None for step in moves])
         total = int(cuts[-1]) if len(cuts) else 0
@@ -124,36 +121,35 @@ class Tape:
             _moved(step, next(moved)) if isinstance(step.motion, Move) else _rested(step, step.motion.ticks, next(held))
             for step in self._steps
         ]
-        q, kind, power = (np.concatenate(part) for part in zip(*rows, strict=True))
+        q, kind = (np.concatenate(part) for part in zip(*rows, strict=True))
         owner = np.repeat(np.arange(len(rows)), [len(one.kind) for one in rows])
         block, blocks = _blocks(kind, [self._steps[step].cut for step in range(len(rows))], owner)
-        return Setpoints(q, power, block, blocks, _held(moves, runs))
+        return Setpoints(q, np.zeros(len(q)), block, blocks, _held(moves, runs))
 
 
 class _Rows(NamedTuple):
-    """The setpoints of a step, (N, 3) rad, what is done, (N,) as `KINDS` has it, and the power, (N,)."""
+    """The setpoints of a step, (N, 3) rad, and what is done, (N,) as `KINDS` has it."""
 
     q: Array
     kind: IntArray
-    power: Array
 
 
 def _rested(step: _Step, ticks: int, joints: Array) -> _Rows:
     """The rows of a rest with the ``joints``, (3,) rad."""
     kind = BlockKind.RAPID if step.kind is None else step.kind
-    return _Rows(np.tile(joints, (ticks, 1)), np.full(ticks, NUMBER[kind]), np.full(ticks, step.power))
+    return _Rows(np.tile(joints, (ticks, 1)), np.full(ticks, NUMBER[kind]))
 
 
 def _moved(step: _Step, run: Run) -> _Rows:
     """The rows of a move."""
     if step.kind is not None:
-        return _Rows(run.q, np.full(len(run.q), NUMBER[step.kind]), np.full(len(run.q), step.power))
+        return _Rows(run.q, np.full(len(run.q), NUMBER[step.kind]))
     kind = run.stretch.copy()
     # The laser is off before the lead-out begins: the overcut is longer than asked for by what a tick can take.
     last = step.motion.path.stretch[-1] if isinstance(step.motion, Move) and isinstance(step.motion.path, Drawn) else -1
     ends = (kind == NUMBER[BlockKind.OVERCUT]) & (np.append(kind[1:], last) == NUMBER[BlockKind.LEAD_OUT])
     kind[ends] = NUMBER[BlockKind.LEAD_OUT]
-    return _Rows(run.q, kind, np.where(np.isin(kind, _DARK), 0.0, step.power))
+    return _Rows(run.q, kind)
 
 
 def _held(steps: Sequence[_Step], runs: Sequence[Run]) -> tuple[Held, ...]:

@@ -159,12 +159,12 @@ def _feeds(process: Fields) -> tuple[float, float] | None:
     values = process.items("feeds")
     if len(values) != 2:
         raise process.problem("feeds are not two numbers")
-    both = Fields(dict(zip(("slowest", "fastest"), values, strict=True)), f"{process.where}, feeds", _FASTEST)
-    slowest, fastest = (both.number(key, 1e-9, _LARGEST) for key in _FASTEST)
+    both = Fields(dict(zip(("slowest", "fastest"), values, strict=True)), f"{process.where}, feeds", _RANGE)
+    slowest, fastest = (both.number(key, 1e-9, _LARGEST) for key in _RANGE)
     return slowest, fastest
 
 
-_FASTEST: Final = ("slowest", "fastest")
+_RANGE: Final = ("slowest", "fastest")
 
 
 def _keys(kind: type) -> tuple[str, ...]:

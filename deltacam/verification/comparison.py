@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
+import shapely
 from shapely import Polygon
 
 from deltacam.model import Array, Contour, Drawing, Operation, Size
@@ -16,6 +18,8 @@ from deltacam.verification.runs import Run
 from deltacam.verification.sharing import BETWEEN_TICKS, Beside, Outline, beside, open_runs
 from deltacam.verification.sizes import size
 from deltacam.verification.way import motion
+
+_RIM: Final = 2e-3  # m, more than the way of a tick
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,14 +52,14 @@ class Comparison:
         drawing: read by the checker itself.
         targets: one per contour, in the drawing's order.
         sizes: what is left of every closed contour that is cut, in the same order.
-        parts: what is to stay of the sheet: every outline that is cut, without the holes directly in it.
+        parts: what is to stay of the sheet, as `finished_parts` finds it.
     """
 
     evidence: Evidence
     drawing: Drawing
     targets: tuple[Target, ...]
     sizes: tuple[Size, ...]
-    parts: tuple[Polygon, ...]
+    parts: tuple[shapely.Geometry, ...]
 
     @property
     def due(self) -> tuple[Target, ...]:
@@ -91,12 +95,20 @@ def _target(evidence: Evidence, outline: Outline, beside: Mapping[int, tuple[Bes
     return Target(contour, found, path, done, open_runs(evidence, outline), beside[contour.number])
 
 
-def finished_parts(drawing: Drawing) -> tuple[Polygon, ...]:
-    """What is to stay of the sheet: every outline that is cut, without the holes directly in it."""
+def finished_parts(drawing: Drawing) -> tuple[shapely.Geometry, ...]:
+    """What is to stay of the sheet: every outline that is cut, without the holes directly in it.
+
+    Of a part whose outline is not cut, such as one with a gap, its holes alone tell: what is right around them stays.
+    """
     cut = {contour.number: contour for contour in drawing.contours if contour.has_kerf}
     lines = {number: line for number, contour in cut.items() if len(line := flattened(contour)) > 2}
     holes: defaultdict[int | None, list[Array]] = defaultdict(list)
     for number, line in lines.items():
         if cut[number].is_hole:
             holes[cut[number].parent].append(line)
-    return tuple(Polygon(line, holes[number]) for number, line in lines.items() if not cut[number].is_hole)
+    parts = [Polygon(line, holes[number]) for number, line in lines.items() if not cut[number].is_hole]
+    alone = [line for parent, found in holes.items() if parent not in lines for line in found]
+    if alone:
+        burnt = shapely.union_all([Polygon(line) for found in holes.values() for line in found])
+        parts += [Polygon(line).buffer(_RIM).difference(burnt) for line in alone]
+    return tuple(parts)

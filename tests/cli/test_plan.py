@@ -53,6 +53,11 @@ def test_without_options_and_settings_everything_is_built_in(planned: list[dict[
     assert (asked["unit"], asked["default_unit"], asked["selection"]) == (None, None, Selection())
 
 
+def test_starts_are_places_of_the_drawing(planned: list[dict[str, Any]]) -> None:
+    run("--start-at", "10,0.5in", "--start-at", "-3,7")
+    assert planned[0]["search"].starts == ((10e-3, 12.7e-3), (-3e-3, 7e-3))
+
+
 def test_the_help_names_what_is_built_in_and_every_unit() -> None:
     shown = " ".join(CliRunner().invoke(command, ["--help"]).stdout.split())
     assert pipeline.DEFAULT_ROBOT in shown

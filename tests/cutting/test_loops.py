@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from deltacam.cutting import trace
 from deltacam.cutting.kerf import offset
-from deltacam.cutting.loops import Looped, Side, Waste, with_loops
+from deltacam.cutting.loops import Looped, Side, with_loops
+from deltacam.cutting.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, BlockKind, Contour, Curve, Loops, Stretch
 from tests.strategies import contour, rectangle, star_curves
@@ -32,11 +33,6 @@ def from_longest(curve: Curve) -> Curve:
     return opened(curves.start_at(curve, longest, float(lengths[longest]) / 2.0))
 
 
-def waste(*contours: Contour, kerf: float = KERF, room: shapely.Geometry | None = None) -> Waste:
-    drawn = [shapely.LinearRing(curves.flatten(one.curve, 1e-7)[0]) for one in contours]
-    return Waste(shapely.STRtree(drawn), room, kerf / 2.0)
-
-
 def looped(
     part: Contour,
     *others: Contour,
@@ -51,8 +47,8 @@ def looped(
     curve = curves.reverse(curve) if backwards else curve
     side: Side = "left" if part.is_hole != backwards else "right"
     way = [Stretch(BlockKind.CUT, curve)]
-    free = waste(part, *others, kerf=kerf, room=room)
-    return with_loops(way, part, side=side, rule=rule, needed=lambda _: radius, waste=free)
+    free = Waste([part, *others], kerf=kerf, room=room)
+    return with_loops(way, part, side=side, kerf=kerf, rule=rule, needed=lambda _: radius, waste=free)
 
 
 def whole(way: tuple[Stretch, ...]) -> Curve:
@@ -278,7 +274,9 @@ def test_a_corner_where_the_cut_begins_gets_none_and_that_is_said(distance: floa
     round_at = int(np.flatnonzero(cut.curve.bulges)[0])
     begun = opened(curves.start_at(cut.curve, round_at, distance))
     way = (Stretch(BlockKind.CUT, begun),)
-    found = with_loops(way, part, side="right", rule=SHARP, needed=lambda _: 1e-3, waste=waste(part))
+    found = with_loops(
+        way, part, side="right", kerf=KERF, rule=SHARP, needed=lambda _: 1e-3, waste=Waste([part], kerf=KERF)
+    )
     assert len(loops(found)) == 3
     (finding,) = found.findings
     assert finding.what.startswith("no loop at a corner where the cut begins: (")
@@ -290,10 +288,14 @@ def test_all_other_stretches_stay_as_they_are() -> None:
     curve = from_longest(cut.curve)
     lead = Curve(points=np.array([curve.points[0] - [0.0, 1e-3], curve.points[0]]), bulges=np.zeros(1), closed=False)
     way = (Stretch(BlockKind.LEAD_IN, lead), Stretch(BlockKind.CUT, curve))
-    found = with_loops(way, part, side="right", rule=SHARP, needed=lambda _: 1e-3, waste=waste(part))
+    found = with_loops(
+        way, part, side="right", kerf=KERF, rule=SHARP, needed=lambda _: 1e-3, waste=Waste([part], kerf=KERF)
+    )
     assert found.way[0] is way[0]
     assert len(found.way) == 10
-    assert with_loops(way[:1], part, side="right", rule=SHARP, needed=_never, waste=waste(part)) == (way[:1], ())
+    assert with_loops(
+        way[:1], part, side="right", kerf=KERF, rule=SHARP, needed=_never, waste=Waste([part], kerf=KERF)
+    ) == (way[:1], ())
 
 
 def _never(_: Array) -> float:

@@ -10,8 +10,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from deltacam.cutting.kerf import offset
-from deltacam.cutting.loops import Waste, with_loops
+from deltacam.cutting.loops import with_loops
 from deltacam.cutting.tabs import Tabbed, with_tabs
+from deltacam.cutting.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import BlockKind, Contour, Curve, Loops, Stretch, Tabs
 from tests.strategies import contour, rectangle, slot, star_curves
@@ -237,9 +238,9 @@ def test_no_tab_is_on_an_edge_that_is_to_be_kept_clear() -> None:
 def test_tabs_keep_clear_of_loops() -> None:
     part = contour(rectangle(0.03, 0.03))
     (cut,) = offset([part], kerf=KERF).cuts
-    free = Waste(tree(curves.opened(part.curve)), None, KERF / 2)
+    free = Waste([part], kerf=KERF)
     way = (Stretch(BlockKind.CUT, begun(cut.curve)),)
-    looped = with_loops(way, part, side="right", rule=Loops(), needed=lambda _: 2e-3, waste=free).way
+    looped = with_loops(way, part, side="right", kerf=KERF, rule=Loops(), needed=lambda _: 2e-3, waste=free).way
     found = with_tabs(looped, part, side="right", kerf=KERF, rule=FOUR, others=tree())
     assert len(tabs(found)) == 4
     assert len(found.way) == len(looped) + 8

@@ -17,10 +17,10 @@ import shapely
 
 from deltacam.cutting.leads import shapes, sizes
 from deltacam.cutting.leads.places import Places, Spots, places
-from deltacam.cutting.leads.places import waste_side as waste_side
 from deltacam.cutting.leads.shapes import Ends
 from deltacam.cutting.leads.sizes import Ability, Size
-from deltacam.cutting.leads.waste import Waste
+from deltacam.cutting.leads.starts import Start
+from deltacam.cutting.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import (
     Array,
@@ -138,6 +138,7 @@ def approaches(
     able: Callable[[Array], Ability],
     tick: float,
     clear: Mapping[int, Sequence[Curve]] = MappingProxyType({}),
+    given: Mapping[int, Start] = MappingProxyType({}),
 ) -> tuple[list[tuple[Approach, ...]], tuple[Finding, ...]]:
     """The ways in which each cut may begin and end, the best leads only, and what a person should know of them.
 
@@ -149,6 +150,7 @@ def approaches(
         able: what the tool can do at places (N, 2) m.
         tick: of the controller, s; an overcut is longer by the way of one.
         clear: by number of contour, edges on which its cut should not begin; it does where there is nothing else.
+        given: by index of cut, where it begins whatever the rule.
 
     Returns:
         for every cut its approaches, none for what is open or engraved, or may begin anywhere without leads.
@@ -156,11 +158,11 @@ def approaches(
     closed = [k for k, cut in enumerate(cuts) if cut.curve.closed and cut.operation is Operation.CUT]
     found: list[tuple[Approach, ...]] = [() for _ in cuts]
     if not has_leads(process):
-        closed = [k for k in closed if cuts[k].contour in clear]
+        closed = [k for k in closed if cuts[k].contour in clear or k in given]
     if not closed:
         return found, ()
     beyond = [_overcut(process, cuts[index], tick) for index in closed]
-    rows = places(cuts, closed, contours, process=process, beyond=beyond, count=PLACES, clear=clear)
+    rows = places(cuts, closed, contours, process=process, beyond=beyond, count=PLACES, clear=clear, given=given)
     feed = np.array([cut.feed or process.feed for cut in cuts])[rows.cut]
     begin = _asked(process.lead_in, feed, rows.begin, rows.begin.ends.backwards(), able, process)
     end = _asked(process.lead_out, feed, rows.end, rows.end.ends, able, process)
@@ -231,7 +233,7 @@ def _improve(share: Array, size: Size, asked: _Asked, trial: Size, which: IntArr
     found = asked.shares(trial.chosen(which), which)
     better = found > share[which] + _ALIKE
     which, found = which[better], found[better]
-    free = waste.is_free(shapes.ways(asked.ends.chosen(which), trial.chosen(which)))
+    free = waste.is_free(shapely.linestrings(shapes.ways(asked.ends.chosen(which), trial.chosen(which))))
     for column, new in zip(size, trial, strict=True):
         column[which[free]] = new[which[free]]
     share[which[free]] = found[free]

@@ -9,7 +9,7 @@ import numpy as np
 
 from deltacam.cutting.leads.shapes import Ends
 from deltacam.cutting.leads.sizes import Ability
-from deltacam.cutting.leads.starts import starts_off
+from deltacam.cutting.leads.starts import Start, starts_off
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, BoolArray, Contour, Curve, Cut, IntArray, Process
 
@@ -77,6 +77,7 @@ def places(
     beyond: Sequence[float],
     count: int,
     clear: Mapping[int, Sequence[Curve]],
+    given: Mapping[int, Start],
 ) -> Places:
     """All places where closed cuts may begin.
 
@@ -88,14 +89,18 @@ def places(
         beyond: how far each of the closed ones goes on beyond its start, m.
         count: of places per cut, where the rule leaves a choice.
         clear: by number of contour, edges on which its cut should not begin.
+        given: by index of cut, where it begins whatever the rule.
     """
     drawn = {contour.number: contour for contour in contours}
     count = count if len(closed) < _MANY else _FEW
     owner, at, begins, ends = [], [], [], []
     for index, further in zip(closed, beyond, strict=True):
         cut = cuts[index]
-        edges = clear.get(cut.contour, ())
-        segment, distance = starts_off(edges, cut.curve, process.start, count=count, kerf=process.kerf)
+        if index in given:
+            segment, distance = np.array([given[index].segment]), np.array([given[index].distance])
+        else:
+            edges = clear.get(cut.contour, ())
+            segment, distance = starts_off(edges, cut.curve, process.start, count=count, kerf=process.kerf)
         side = waste_side(cut, drawn[cut.contour], process.kerf)
         line = _Line(cut.curve, side)
         owner.append(np.full(len(segment), index))

@@ -11,7 +11,7 @@ import shapely.affinity
 
 from deltacam.cutting.fitting import OUTSIDE
 from deltacam.cutting.leads.sizes import Ability, ability
-from deltacam.model import Array, BoolArray, Placement
+from deltacam.model import Array, Placement
 
 if TYPE_CHECKING:
     from deltacam.robot.robot import Robot
@@ -29,27 +29,19 @@ class Reach:
         """Of the controller, s."""
         return 1.0 / self.robot.controller.rate_hz
 
-    def is_allowed(self, points: Array) -> BoolArray:
-        """Which places lie in the robot's workspace, (N,)."""
-        return np.asarray(self.robot.workspace.excess(self._in_machine(points)) <= OUTSIDE)
-
     def area(self) -> shapely.Polygon:
         """The workspace in the sheet frame; a disc as a polygon within it."""
         sheet, where = self.robot.workspace, self.placement
         if sheet.radius is not None:
-            area = shapely.Point(0.0, 0.0).buffer(sheet.radius, quad_segs=256)
+            area = shapely.Point(0.0, 0.0).buffer(sheet.radius + OUTSIDE, quad_segs=256)
         else:
-            x, y = 0.5 * (sheet.width or 0.0), 0.5 * (sheet.depth or 0.0)
+            x, y = 0.5 * (sheet.width or 0.0) + OUTSIDE, 0.5 * (sheet.depth or 0.0) + OUTSIDE
             area = shapely.box(-x, -y, x, y)
         moved = shapely.affinity.translate(area, -where.x, -where.y)
         return shapely.affinity.rotate(moved, -where.rotation, origin=(0.0, 0.0), use_radians=True)
 
     def able(self, points: Array) -> Ability:
         """What the tool can do at places."""
-        heights = np.full(len(points), self.placement.z)
-        return ability(self.robot, np.column_stack([self._in_machine(points), heights]))
-
-    def _in_machine(self, points: Array) -> Array:
         cos, sin = np.cos(self.placement.rotation), np.sin(self.placement.rotation)
-        shift = np.array([self.placement.x, self.placement.y])
-        return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]) + shift)
+        machine = points @ np.array([[cos, sin], [-sin, cos]]) + (self.placement.x, self.placement.y)
+        return ability(self.robot, np.column_stack([machine, np.full(len(points), self.placement.z)]))

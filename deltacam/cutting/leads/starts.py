@@ -1,19 +1,73 @@
-"""Where on a closed cut it may begin, by the rule of the process."""
+"""Where on a closed cut it may begin: where a person says so, or by the rule of the process."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
 
+from deltacam.errors import InfeasibleError
 from deltacam.geometry import curve as curves
-from deltacam.model import Array, Curve, IntArray, StartRule
+from deltacam.model import Array, Contour, Curve, Cut, IntArray, StartRule
+from deltacam.units import to_mm
 
 _SHARP: Final = np.radians(10.0)
 _FLATTENING: Final = 1e-6  # m
 _FINER: Final = 8  # times as many places are tried where most of a cut is not free
+_BESIDE: Final = 0.5e-3  # m; a place that is farther from all contours means none of them
+_HINT: Final = "give a place on a closed contour that is cut, in the coordinates of the report (--start-at)"
+
+
+class Start(NamedTuple):
+    """A place on a cut: the segment, and the distance from its start, m."""
+
+    segment: int
+    distance: float
+
+
+def given_starts(
+    places: Sequence[tuple[float, float]], cuts: Sequence[Cut], contours: Sequence[Contour]
+) -> dict[int, Start]:
+    """Where cuts begin because a person says so, by the index of the cut.
+
+    Args:
+        places: on closed contours that are cut, m.
+        cuts: of the contours.
+        contours: of the drawing.
+
+    Raises:
+        InfeasibleError: a place is on no such contour, or two are on one.
+    """
+    found: dict[int, Start] = {}
+    for x, y in places:
+        point, where = np.array([x, y]), f"the start at ({to_mm(x):.3f}, {to_mm(y):.3f}) mm"
+        contour = _contour_at(point, contours, where)
+        own = [index for index, cut in enumerate(cuts) if cut.contour == contour.number and cut.curve.closed]
+        if not own:
+            what = f"contour {contour.number} has no cut that goes around and could begin there"
+            raise InfeasibleError(what, where=where, hint=_HINT)
+        index = min(own, key=lambda one: curves.nearest(cuts[one].curve, point)[2])
+        if index in found:
+            what = f"the cut of contour {contour.number} already begins elsewhere"
+            raise InfeasibleError(what, where=where, hint="give one place for every contour")
+        found[index] = Start(*curves.nearest(cuts[index].curve, point)[:2])
+    return found
+
+
+def _contour_at(point: Array, contours: Sequence[Contour], where: str) -> Contour:
+    """The closed contour that a place, (2,) m, is on."""
+    drawn = [contour for contour in contours if contour.has_kerf]
+    if not drawn:
+        raise InfeasibleError("no closed contour is cut", where=where, hint=_HINT)
+    away = [curves.nearest(contour.curve, point)[2] for contour in drawn]
+    nearest = int(np.argmin(away))
+    if away[nearest] > _BESIDE:
+        what = f"there is no closed contour that is cut; contour {drawn[nearest].number} is nearest, "
+        what += f"{to_mm(away[nearest]):.3f} mm away"
+        raise InfeasibleError(what, where=where, hint=_HINT)
+    return drawn[nearest]
 
 
 def starts_off(

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from deltacam.cutting import kerf
 from deltacam.cutting.leads.approaches import approaches, begun
 from deltacam.cutting.leads.sizes import Ability
-from deltacam.cutting.leads.waste import Waste
+from deltacam.cutting.waste import Waste
 from deltacam.geometry import curve as curves
 from deltacam.model import Array, BlockKind, Contour, Curve, Cut, Finding, Lead, Operation, Process, StartRule
 from tests.strategies import contour, rectangle, slot, star_curves
@@ -158,7 +158,7 @@ def test_a_full_lead_elsewhere_is_better_than_a_short_one() -> None:
 def test_leads_stay_where_the_robot_may_go() -> None:
     contours = [contour(rectangle(0.03, 0.02))]
     cuts = kerf.offset(contours, kerf=KERF).cuts
-    waste = Waste(contours, kerf=KERF, is_allowed=lambda points: points[:, 1] > -0.2e-3)
+    waste = Waste(contours, kerf=KERF, room=shapely.box(-1.0, -0.2e-3, 1.0, 1.0))
     found, _ = approaches(cuts, contours, process=PROCESS, waste=waste, able=able, tick=TICK)
     for choice in found[0]:
         assert choice.lead_in is not None
