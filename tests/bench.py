@@ -6,6 +6,7 @@ It shares nothing with deltacam's planner, so that what it makes is an independe
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -163,6 +164,24 @@ class Bench:
 
     def _to_sheet(self, base: np.ndarray) -> np.ndarray:
         return (base - (self.placement.x, self.placement.y)) @ self._turn()
+
+    @staticmethod
+    def said(program: Program, contour: int, kinds: Sequence[BlockKind], *, rows: Sequence[int] = ()) -> Program:
+        """The program whose cut of a contour is said to be of these kinds, one after the other.
+
+        Each but the first begins at one of the ``rows`` of the cut; they are of one length where none are given.
+        """
+        blocks = list(program.blocks)
+        index = next(at for at, block in enumerate(blocks) if block.kind is BlockKind.CUT and block.contour == contour)
+        cut = blocks[index]
+        count = cut.last + 1 - cut.first
+        edges = [0, *(rows or [count * number // len(kinds) for number in range(1, len(kinds))]), count]
+        blocks[index : index + 1] = [
+            replace(cut, kind=kind, first=cut.first + first, last=cut.first + end - 1)
+            for kind, (first, end) in zip(kinds, pairwise(edges), strict=True)
+        ]
+        column = np.repeat(np.arange(len(blocks)), [block.last + 1 - block.first for block in blocks])
+        return replace(program, blocks=tuple(blocks), block=column)
 
     @staticmethod
     def failed(report: Report) -> set[str]:

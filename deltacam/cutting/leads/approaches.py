@@ -68,6 +68,7 @@ _BRIDGE: Final = 0.2e-3  # m, longer than the blends at the ends of leads
 _AS_FAST: Final = 0.95  # of the highest speed, for a place that the order may choose
 _ALIKE: Final = 0.01  # shares that differ by less are as good
 _BLENDED: Final = 0.45  # of the tolerance, for the blend between a lead and the contour
+_SPARE: Final = 1.06  # of the speed: leads of full size are made for so much, as what they bring is but foretold
 _NAMED: Final = 5
 
 
@@ -207,11 +208,11 @@ def _asked(
     """What the leads of some spots are for."""
     deviation, can = _BLENDED * process.tolerance, able(spots.ends.place)
     speed = spots.allowed(feed, can, process.tolerance)
-    full = sizes.wanted(lead, speed, can, deviation, spots.bend)
+    full = sizes.wanted(lead, _SPARE * speed, can, deviation, spots.bend)
     if lead.length is not None or lead.radius is not None or lead.shape == "line":
         speed = np.minimum(speed, sizes.arrival(full, can, deviation, spots.bend, spots.ahead))
     else:
-        full = sizes.grown(full, speed, can, deviation, spots.bend, spots.ahead)
+        full = sizes.grown(full, _SPARE * speed, can, deviation, spots.bend, spots.ahead)
     return _Asked(ends, spots, can, np.maximum(speed, 1e-6), full, deviation)
 
 

@@ -7,12 +7,13 @@ from typing import Final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from deltacam.model import Array, Check, IntArray
+from deltacam.model import Array, BlockKind, Check, IntArray
 from deltacam.verification.checks.measure import at_tick
 from deltacam.verification.comparison import Comparison, Target
-from deltacam.verification.evidence import WORKING_KINDS, Evidence
+from deltacam.verification.evidence import KINDS, WORKING_KINDS, Evidence
 from deltacam.verification.kerf_path import ACCURACY
 from deltacam.verification.near import Lines
+from deltacam.verification.runs import Run
 from deltacam.verification.sharing import burnt
 
 LONGEST: Final = 1.0e-3
@@ -20,6 +21,7 @@ LONGEST: Final = 1.0e-3
 
 _SPACING: Final = 0.1e-3  # m, of samples along a way
 _RADIUS: Final = 0.5e-3  # m, of the circle in which the lengths of way and drawing are compared
+_BEYOND: Final = (KINDS.index(BlockKind.OVERCUT), KINDS.index(BlockKind.LEAD_OUT))
 _AGAIN: Final = 0.6  # of the circle's width: so much more way than drawn is a second pass
 
 
@@ -28,10 +30,11 @@ def cut_again(comparison: Comparison) -> Check:
 
     Around every 0.1 mm of way the length of all ways is compared with that of all kerf paths: two sides of a narrow web
     or of a sharp corner are near each other in both. Of an outline that shares edges its own cuts are drawn, so that an
-    edge which serves two counts once.
+    edge which serves two counts once. The last step before an overcut or a lead-out is left out: within it the cut
+    comes back to its start.
     """
     evidence, name, limit = comparison.evidence, "material cut twice", LONGEST * 1e3
-    spans = [span for run in evidence.runs for span in evidence.stretches(run, frozenset(WORKING_KINDS))]
+    spans = [span for run in evidence.runs for span in _spans(evidence, run)]
     if not spans:
         return Check(name, True, 0.0, limit, "mm")
     found = [_evenly(evidence.sheet[first : end + 1]) for first, end in spans]
@@ -46,6 +49,15 @@ def cut_again(comparison: Comparison) -> Check:
     # Both passes are counted where they lie on each other, so that half of it is what was cut again.
     length, tick = len(again) * _SPACING * 1e3 / 2.0, int(ticks[again[-1]]) if len(again) else None
     return at_tick(evidence, name, length <= limit, length, limit, "mm", tick=tick)
+
+
+def _spans(evidence: Evidence, run: Run) -> list[tuple[int, int]]:
+    """Where a run cuts or engraves: the tick at which each stretch begins, and the one until which it counts."""
+    return [
+        (first, end - 1 if evidence.kind[end] in _BEYOND else end)
+        for first, end in evidence.stretches(run, frozenset(WORKING_KINDS))
+        if end - first > 1
+    ]
 
 
 def _drawn(evidence: Evidence, target: Target, near: float) -> Array:

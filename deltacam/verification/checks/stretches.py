@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+import shapely
 
 from deltacam.model import Array, BlockKind, Check, Operation
 from deltacam.verification.checks.measure import at_most, none_of
@@ -65,7 +67,7 @@ def overcut(comparison: Comparison) -> Check:
             continue
         around = [float(np.hypot(*(np.roll(ring, -1, axis=0) - ring).T).sum()) for ring in target.rings]
         for run in target.runs if len(evidence.speed) else ():
-            length, step = _overcut_of(evidence, run)
+            length, step = _overcut_of(evidence, run, target.rings)
             least, most = min(wanted, min(around, default=wanted)), wanted
             if run in target.open_runs:
                 least = most = 0.0
@@ -75,14 +77,32 @@ def overcut(comparison: Comparison) -> Check:
     return at_most(evidence, name, 1e6 * np.array(off), limit, "um off", ticks=np.array(ticks, dtype=np.int64))
 
 
-def _overcut_of(evidence: Evidence, run: Run) -> tuple[float, float]:
-    """How long the overcut of a run is, and the longest step about it, m."""
+def _overcut_of(evidence: Evidence, run: Run, rings: Sequence[Array]) -> tuple[float, float]:
+    """How long the overcut of a run is along its path, and the longest step about it, m."""
     length, step = 0.0, 0.0
     for first, end in evidence.stretches(run, _OVERCUT):
         steps = evidence.speed[max(first - 1, 0) : end + 1] / evidence.rate
-        length += float(evidence.speed[first:end].sum()) / evidence.rate
+        way = float(evidence.speed[first:end].sum()) / evidence.rate
+        length += _along(rings, evidence.sheet[[first, end]], way)
         step = max(step, float(steps.max()))
     return length, step if length else float(evidence.speed[run.end - 1]) / evidence.rate
+
+
+def _along(rings: Sequence[Array], ends: Array, way: float) -> float:
+    """How far it is along the nearest of the rings from one of the ``ends`` (2, 2) m to the other, m.
+
+    The tool goes about as far, a ``way`` that cuts corners.
+    """
+    lines = np.array([shapely.LinearRing(ring) for ring in rings], dtype=object)
+    if not len(lines):
+        return way
+    places = shapely.points(ends)
+    ring = lines[int(np.argmin(shapely.distance(lines, places[0]) + shapely.distance(lines, places[1])))]
+    begin, end = shapely.line_locate_point(ring, places)
+    ahead = (end - begin) % ring.length
+    once = np.array([ahead, ring.length - ahead])  # whichever way the ring is drawn
+    lengths = (once + ring.length * np.arange(np.ceil(way / ring.length) + 1)[:, None]).ravel()
+    return float(lengths[np.argmin(np.abs(lengths - way))])
 
 
 def tab_width(comparison: Comparison) -> Check:

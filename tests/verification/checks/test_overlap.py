@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deltacam.geometry import curve as curves
-from deltacam.model import Contour, Curve, Drawing
+from deltacam.model import BlockKind, Contour, Curve, Drawing
 from deltacam.verification.verify import verify
 from tests.bench import Bench
 
@@ -31,6 +31,20 @@ def test_what_is_cut_again_is_as_long_as_it_is(bench: Bench, again: float) -> No
     assert found.worst == pytest.approx(again, abs=1.0)
     assert found.passed == (found.worst <= 1.0)
     assert found.contour == 2
+
+
+@pytest.mark.parametrize("steps", [1, 3, 4, 6])
+def test_the_last_step_before_a_lead_out_is_no_second_cut(bench: Bench, steps: int) -> None:
+    """A step is 0.8 mm long there; what follows is said to be a lead-out."""
+    fast = bench.but(order=(2,), turns=1.3, feed=0.4)
+    program = fast.program()
+    cut = next(block for block in program.blocks if block.kind is BlockKind.CUT)
+    tool = fast.robot.forward(program.q[cut.first : cut.last + 1])[:, :2]
+    ways, around = np.cumsum(np.hypot(*np.diff(tool, axis=0).T)), 2.0 * np.pi * (6e-3 - bench.process.kerf / 2.0)
+    end = int(np.searchsorted(ways, around)) + steps
+    changed = fast.said(program, 2, [BlockKind.CUT, BlockKind.LEAD_OUT], rows=[end])
+    again = 1e3 * max(float(ways[end - 2]) - around, 0.0)
+    assert fast.check(verify(changed, drawing=fast.drawing), NAME).worst == pytest.approx(again, abs=0.3)
 
 
 def test_two_parts_whose_cuts_nearly_touch_are_not_cut_twice(bench: Bench) -> None:

@@ -1,8 +1,6 @@
 """Leads, loops, overcuts and tabs, put by hand on the cuts of the bench's plate, whose measures are known."""
 
-from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -17,24 +15,6 @@ from tests.bench import Bench, plate
 LEAD_IN, LEAD_OUT, LOOP = BlockKind.LEAD_IN, BlockKind.LEAD_OUT, BlockKind.LOOP
 CUT, TAB, OVERCUT = BlockKind.CUT, BlockKind.TAB, BlockKind.OVERCUT
 UM = 1e6
-
-
-def said(program: Program, contour: int, kinds: Sequence[BlockKind], *, rows: Sequence[int] = ()) -> Program:
-    """The program whose cut of a contour is said to be of these kinds, from its row 0 and then from these ``rows`` on.
-
-    They are of one length each where no rows are given.
-    """
-    blocks = list(program.blocks)
-    index = next(at for at, block in enumerate(blocks) if block.kind is CUT and block.contour == contour)
-    cut = blocks[index]
-    count = cut.last + 1 - cut.first
-    edges = [0, *(rows or [count * number // len(kinds) for number in range(1, len(kinds))]), count]
-    blocks[index : index + 1] = [
-        replace(cut, kind=kind, first=cut.first + first, last=cut.first + end - 1)
-        for kind, (first, end) in zip(kinds, pairwise(edges), strict=True)
-    ]
-    column = np.repeat(np.arange(len(blocks)), [block.last + 1 - block.first for block in blocks])
-    return replace(program, blocks=tuple(blocks), block=column)
 
 
 def alone() -> Drawing:
@@ -68,7 +48,7 @@ def way(bench: Bench, program: Program, contour: int) -> np.ndarray:
     ],
 )
 def test_every_stretch_has_its_place(bench: Bench, program: Program, kinds: list[BlockKind], in_place: bool) -> None:
-    report = verify(said(program, 2, kinds), drawing=bench.drawing)
+    report = verify(bench.said(program, 2, kinds), drawing=bench.drawing)
     assert bench.check(report, "leads, loops and tabs in their place").passed is in_place
 
 
@@ -76,7 +56,7 @@ def test_every_stretch_has_its_place(bench: Bench, program: Program, kinds: list
 def test_a_way_beside_the_cut_that_burns_the_part_is_found_with_its_depth(
     bench: Bench, program: Program, kind: BlockKind
 ) -> None:
-    changed = said(program, 2, [CUT, kind, CUT] if kind is LOOP else [kind, CUT])
+    changed = bench.said(program, 2, [CUT, kind, CUT] if kind is LOOP else [kind, CUT])
     block = next(block for block in changed.blocks if block.kind is kind)
     assert bench.check(verify(changed, drawing=bench.drawing), "leads outside the part").passed
     moved = bench.moved_along_the_radius(changed, (block.first + block.last) // 2, 0.25e-3)
@@ -93,7 +73,7 @@ def test_around_a_hole_whose_outline_is_not_cut_there_is_material() -> None:
 
 def test_a_lead_out_of_a_hole_whose_outline_is_not_cut_is_found(bench: Bench) -> None:
     own = bench.but(drawing=alone(), order=(2,))
-    changed = said(own.program(), 2, [LEAD_IN, CUT])
+    changed = own.said(own.program(), 2, [LEAD_IN, CUT])
     lead = next(block for block in changed.blocks if block.kind is LEAD_IN)
     assert own.check(verify(changed, drawing=own.drawing), "leads outside the part").passed
     moved = own.moved_along_the_radius(changed, (lead.first + lead.last) // 2, 0.25e-3)
@@ -110,7 +90,7 @@ def test_the_overcut_is_as_long_as_the_process_says(bench: Bench, more: float) -
     steps = np.hypot(*np.diff(way(own, program, 2), axis=0).T)
     first = int(np.searchsorted(np.cumsum(steps), around)) + 1
     beyond, step = float(steps[first:].sum()), float(steps[first - 1 :].max())
-    changed = said(program, 2, [CUT, OVERCUT], rows=[first])
+    changed = bench.said(program, 2, [CUT, OVERCUT], rows=[first])
     changed = replace(changed, process=replace(changed.process, overcut=beyond + more))
     found = own.check(verify(changed, drawing=own.drawing), "overcut")
     allowed = step if more >= 0.0 else max(step, own.process.feed / own.robot.controller.rate_hz) + step
@@ -121,7 +101,7 @@ def test_the_overcut_is_as_long_as_the_process_says(bench: Bench, more: float) -
 def test_a_tab_is_as_wide_as_the_process_says(bench: Bench, program: Program) -> None:
     count = len(way(bench, program, 2)) - 1
     first, end = count // 2, count // 2 + 8
-    changed = said(program, 2, [CUT, TAB, CUT], rows=[first, end])
+    changed = bench.said(program, 2, [CUT, TAB, CUT], rows=[first, end])
     points = way(bench, program, 2)
     width = float(np.hypot(*np.diff(points[first : end + 1], axis=0).T).sum()) - program.process.kerf
     for asked, off in ((width, 0.0), (width + 0.1e-3, 100.0), (width - 0.15e-3, 150.0)):
@@ -132,5 +112,5 @@ def test_a_tab_is_as_wide_as_the_process_says(bench: Bench, program: Program) ->
 
 
 def test_a_tab_that_nobody_asked_for_is_found(bench: Bench, program: Program) -> None:
-    changed = said(program, 2, [CUT, TAB, CUT])
+    changed = bench.said(program, 2, [CUT, TAB, CUT])
     assert not bench.check(verify(changed, drawing=bench.drawing), "tab width").passed
