@@ -54,9 +54,8 @@ def main() -> None:
             known = best[one.name]
             greedy, ours, gap, seconds = row(one, cost, known["best"])
             gaps.append(gap)
-            by = known["by"].split(",")[0] if not known["exact"] else "exact"
-            text = f"{greedy:.3f} | {ours:.3f} | {known['best']:.3f} | {gap:.2f} | {seconds:.2f}"
-            print(f"| {kind} | {size} | {text} | {by} |", flush=True)
+            text = f"{greedy:.3f} | {ours:.3f} | {known['best']:.3f} | {round(gap, 2) + 0.0:.2f} | {seconds:.2f}"
+            print(f"| {kind} | {size} | {text} | {known['by']} |", flush=True)
     print(f"\n{len(gaps)} sheets, no rule broken")
     print(f"the gap is {np.median(gaps):.2f} % in the median and {max(gaps):.2f} % at most")
     for size in LARGE if largest >= max(SIZES) else ():

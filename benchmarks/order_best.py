@@ -8,11 +8,15 @@ delta-300 in whole 0.1 us. Independent answers, and long runs of our own search;
 - up to 350 contours OR-tools' routing library: a node for every place, of which one per contour is visited,
 - for more OR-tools over the contours alone, each held at the place that our search chose, then the best places for
   that sequence,
-- for nested rings also OR-tools over whole stacks, each cut from the inside to the outside in one go.
+- where nothing must come first LKH, the Lin-Kernighan heuristic of Helsgaun: up to 120 contours over all places, which
+  Noon and Bean's transformation (1993) turns into a tour without groups; for more over the contours, in turns with the
+  best places for each sequence,
+- for nested rings also both of them over whole stacks, each cut from the inside to the outside in one go.
 
-Needs `pip install ortools`, and takes about half an hour; with 0 SECONDS OR-tools is left out:
+Needs `pip install ortools elkai`, and takes about an hour; with 0 SECONDS OR-tools is left out, with 0 RUNS LKH is, and
+with 0 TRIES our own runs are as long as usual:
 
-    python -m benchmarks.order_best [SECONDS] [TRIES_PER_CONTOUR] [LEAST_CONTOURS]
+    python -m benchmarks.order_best [SECONDS] [TRIES_PER_CONTOUR] [RUNS] [LEAST_CONTOURS] [MOST_CONTOURS]
 """
 
 from __future__ import annotations
@@ -20,6 +24,8 @@ from __future__ import annotations
 import json
 import sys
 import time
+from collections.abc import Callable
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +42,11 @@ from deltacam.robot.reader import load_robot
 DATA = Path(__file__).parent / "data" / "order_best.json"
 EXACT = 14
 WHOLE = 350
+ALL_PLACES = 120
+TURNS = 4
 SEEDS = (101, 102)
+COARSE = 1e-5
+"""s, the unit of LKH, whose numbers must stay small."""
 UNIT = 1e-7  # s
 NEVER = 10**9
 
@@ -132,8 +142,41 @@ def routed(problem: Problem, places: np.ndarray, seconds: float) -> list[int] | 
     return found
 
 
-def parts_at_once(problem: Problem, seconds: float) -> list[int] | None:
-    """What OR-tools finds where a part is cut at once, all of it begun at places of one number; then the best places.
+def toured(problem: Problem, places: np.ndarray, runs: int) -> list[int]:
+    """What LKH finds over these places, the rest of all last among them; no rule is kept.
+
+    The places of a contour are in a ring of ways that cost nothing. A tour comes to one of them, goes around, and
+    leaves from the one before it for what leaving from the first one costs.
+    """
+    import elkai
+
+    owner, count = problem.owner[places], len(places)
+    cost = np.rint(matrix(problem, places) * (UNIT / COARSE)).astype(np.int64)
+    first = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
+    following = np.arange(1, count + 1)
+    following[np.append(first[1:], count) - 1] = first
+    apart = 20 * int(np.median(cost)) + int(cost.max()) + 1
+    ways = cost[following] + apart
+    ways[owner[:, None] == owner[None]] = 4 * apart
+    ways[np.arange(count), following] = 0
+    tour = elkai.DistanceMatrix(ways.tolist()).solve_tsp(runs=runs)[:-1]
+    begin = tour.index(count - 1)
+    tour = tour[begin + 1 :] + tour[:begin]
+    return [
+        int(places[one]) for before, one in zip([count - 1, *tour], tour, strict=False) if owner[before] != owner[one]
+    ]
+
+
+def toured_in_turns(problem: Problem, held: list[int], runs: int) -> list[int]:
+    """What LKH finds over the contours, each held at a place; then over the best places for that, and so on."""
+    for _ in range(TURNS):
+        found = toured(problem, np.append(np.sort(held), len(problem.begins) - 1), runs)
+        held = best_places(problem, problem.owner[found].tolist())
+    return held
+
+
+def parts_at_once(problem: Problem, solve: Callable[[Problem, np.ndarray], list[int] | None]) -> list[int] | None:
+    """What a solver finds where a part is cut at once, all of it begun at places of one number; then the best places.
 
     None where parts are not contours in each other, one in each.
     """
@@ -156,7 +199,7 @@ def parts_at_once(problem: Problem, seconds: float) -> list[int] | None:
     free = Precedence(np.zeros(count, dtype=np.int64), np.full((count + 1, 1), count))
     none = np.zeros(count + 1, dtype=np.int64)
     parts = Problem(begins, ends, np.append(PLACES * np.arange(count + 1), len(begins)), free, none, none, problem.cost)
-    answer = routed(parts, np.arange(len(begins)), seconds)
+    answer = solve(parts, np.arange(len(begins)))
     if answer is None or len(answer) != count:
         return None
     return best_places(problem, [cut for part in parts.owner[answer].tolist() for cut in chains[part]])
@@ -180,51 +223,66 @@ def _keep_rule(model: object, problem: Problem, nodes: dict[int, list[int]]) -> 
                 model.solver().Add(passed.CumulVar(one) <= passed.CumulVar(other))  # type: ignore[attr-defined]
 
 
-def known(sheet: Sheet, cost: Rapids, seconds: float, tries: int, earlier: dict[str, float]) -> dict[str, Any]:
+def ours(sheet: Sheet, cost: Rapids, problem: Problem, tries: int) -> list[int]:
+    """The best that our own search finds with some seeds; in its usual time with 0 tries per contour."""
+    found = []
+    for seed in SEEDS if tries else (0,):
+        effort = tries * len(sheet.cuts) if tries else None
+        options = {"parents": sheet.parents, "start": (0.0, 0.0), "cost": cost, "places": sheet.places}
+        ordered = order(sheet.cuts, **options, seed=seed, effort=effort)  # type: ignore[arg-type]
+        first = problem.first[np.array(ordered.index)]
+        found.append([int(base) + int(place or 0) for base, place in zip(first, ordered.place, strict=True)])
+    return min(found, key=lambda places: cost_of(problem, places))
+
+
+def by_or_tools(problem: Problem, held: list[int], seconds: float) -> dict[str, list[int] | None]:
+    """What OR-tools finds, ``held`` being places that are good."""
+    found: dict[str, list[int] | None] = {}
+    if problem.count <= WHOLE:
+        found["or-tools"] = routed(problem, np.arange(len(problem.begins)), seconds)
+    else:
+        answer = routed(problem, np.append(np.sort(held), len(problem.begins) - 1), seconds)
+        found["or-tools, places held"] = answer and best_places(problem, problem.owner[answer].tolist())
+    if (problem.rule.waiting > 0).any():
+        found["or-tools, parts at once"] = parts_at_once(problem, lambda one, places: routed(one, places, seconds))
+    return found
+
+
+def by_lkh(problem: Problem, held: list[int], runs: int) -> dict[str, list[int] | None]:
+    """What LKH finds, ``held`` being places that are good."""
+
+    def solve(one: Problem, places: np.ndarray) -> list[int]:
+        if one.count <= ALL_PLACES:
+            return toured(one, places, runs)
+        first = places[:-1].reshape(one.count, -1)[:, 0]
+        return toured_in_turns(one, first.tolist(), runs)
+
+    if (problem.rule.waiting > 0).any():
+        return {"lkh, parts at once": parts_at_once(problem, solve)}
+    if len(set(problem.stage.tolist())) > 1:
+        return {}
+    if problem.count <= ALL_PLACES:
+        return {"lkh": toured(problem, np.arange(len(problem.begins)), runs)}
+    return {"lkh, places in turns": toured_in_turns(problem, held, runs)}
+
+
+def known(
+    sheet: Sheet, cost: Rapids, seconds: float, tries: int, runs: int, earlier: dict[str, float]
+) -> dict[str, Any]:
     """What every solver finds for a sheet, and found in ``earlier`` runs."""
     problem = problem_of(sheet.cuts, parents=sheet.parents, start=(0.0, 0.0), cost=cost, places=sheet.places)
-    found: dict[str, list[int]] = {}
-    for seed in SEEDS:
-        effort = tries * len(sheet.cuts)
-        ordered = order(
-            sheet.cuts,
-            parents=sheet.parents,
-            start=(0.0, 0.0),
-            cost=cost,
-            places=sheet.places,
-            seed=seed,
-            effort=effort,
-        )
-        first = problem.first[np.array(ordered.index)]
-        found[f"ours, seed {seed}, {effort} tries"] = [
-            int(base) + int(place or 0) for base, place in zip(first, ordered.place, strict=True)
-        ]
-    ours = min(found.values(), key=lambda places: cost_of(problem, places))
+    held = ours(sheet, cost, problem, tries)
+    found: dict[str, list[int] | None] = {"ours": held}
     if problem.count <= EXACT:
         found["exact"] = exact(problem)
-    elif seconds == 0.0:
-        pass
-    elif problem.count <= WHOLE:
-        answer = routed(problem, np.arange(len(problem.begins)), seconds)
-        if answer is not None:
-            found["or-tools"] = answer
-    else:
-        held = np.append(np.sort(ours), len(problem.begins) - 1)
-        answer = routed(problem, held, seconds)
-        if answer is not None:
-            found["or-tools, places held"] = best_places(problem, problem.owner[answer].tolist())
-    whole = parts_at_once(problem, seconds) if seconds and (problem.rule.waiting > 0).any() else None
-    if whole is not None:
-        found["or-tools, parts at once"] = whole
-    times = {name: cost_of(problem, places) for name, places in found.items() if keeps(problem, places)}
-    times = {name: round(value, 9) for name, value in times.items()}
+    if seconds:
+        found |= by_or_tools(problem, held, seconds)
+    if runs:
+        found |= by_lkh(problem, held, runs)
+    times = {name: round(cost_of(problem, one), 9) for name, one in found.items() if one and keeps(problem, one)}
     times = {**earlier, **{name: min(value, earlier.get(name, value)) for name, value in times.items()}}
-    return {
-        "best": min(times.values()),
-        "by": min(times, key=lambda name: times[name]),
-        "exact": "exact" in times,
-        "times": times,
-    }
+    by = "exact" if "exact" in times else min(times, key=lambda name: times[name])
+    return {"best": times[by], "by": by, "times": times}
 
 
 def main() -> None:
@@ -232,15 +290,16 @@ def main() -> None:
     import ortools
 
     numbers = [float(argument) for argument in sys.argv[1:]]
-    seconds, tries, least = (*numbers, *(15.0, 30.0, 0.0)[len(numbers) :])
+    seconds, tries, runs, least, most = (*numbers, *(15.0, 30.0, 5.0, 0.0, np.inf)[len(numbers) :])
     cost = Rapids(load_robot("delta-300"))
-    stored: dict[str, Any] = json.loads(DATA.read_text()) if DATA.exists() else {}
-    for sheet in sheets(tuple(size for size in SIZES if size >= least)):
+    for sheet in sheets(tuple(size for size in SIZES if least <= size <= most)):
         started = time.perf_counter()
-        stored[sheet.name] = known(sheet, cost, seconds, int(tries), stored.get(sheet.name, {}).get("times", {}))
+        stored: dict[str, Any] = json.loads(DATA.read_text()) if DATA.exists() else {}
+        earlier = stored.get(sheet.name, {}).get("times", {})
+        stored[sheet.name] = known(sheet, cost, seconds, int(tries), int(runs), earlier)
         stored["provenance"] = {
-            "solver": f"OR-tools {ortools.__version__}, routing, PATH_CHEAPEST_ARC, GUIDED_LOCAL_SEARCH, "
-            f"{seconds:g} s for each sheet; exact dynamic program up to {EXACT} contours",
+            "solver": f"OR-tools {ortools.__version__}, routing, PATH_CHEAPEST_ARC, GUIDED_LOCAL_SEARCH; LKH 3 as in "
+            f"elkai {version('elkai')}; exact dynamic program up to {EXACT} contours; the least of several runs",
             "problem": (__doc__ or "").split("\n\n")[1].replace("\n", " "),
             "robot": "delta-300",
             "script": "benchmarks/order_best.py",

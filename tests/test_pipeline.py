@@ -21,6 +21,7 @@ from deltacam.model import BlockKind, Lead, Mode
 from deltacam.pipeline import Outputs, Planned, plan, plan_to_folder
 from deltacam.program.formats import read_program
 from deltacam.report.text import to_text
+from tests.sheets import drawn
 
 DXF = Path(__file__).parent / "data" / "dxf"
 DEG = np.pi / 180.0
@@ -219,3 +220,14 @@ def test_a_frame_goes_around_the_leads_too(drone: Planned) -> None:
 def test_leads_stay_inside_holes_whose_outline_is_not_cut() -> None:
     planned = plan(DXF / "switch-mount-duplicates.dxf", what_if=False)
     assert planned.report.passed, [check for check in planned.report.checks if not check.passed]
+
+
+def test_the_overcut_of_a_tiny_gear_verifies() -> None:
+    """The tool rounds its corners within the tolerance, so that its way is shorter than the contour."""
+    turn = 2.0 * np.pi * np.arange(24) / 24.0
+    radius = np.where(np.arange(24) % 2, 0.6, 0.48)
+    gear = list(zip(radius * np.cos(turn), radius * np.sin(turn), strict=True))
+    data = drawn([(-10.0, -10.0, 20.0, 20.0)], outlines=[gear])
+    process = replace(load_process("steel-1mm-fibre"), feed=0.02, overcut=1e-3)
+    planned = plan("gear.dxf", data=data, robot="irb360-1600", process=process, what_if=False, jobs=1)
+    assert planned.report.passed

@@ -14,7 +14,7 @@ from deltacam.robot.reader import load_robot
 from deltacam.verification.checks.table import OF_COMMON_EDGES
 from deltacam.verification.verify import COMMON_EDGE_CHECKS, verify
 from tests.damage import in_common
-from tests.nested import Box, drawn, rows
+from tests.sheets import Box, drawn, rows
 
 PROCESS = Process(
     name="test steel",

@@ -1,4 +1,4 @@
-"""Drawings of plates that are nested one kerf apart, as DXF."""
+"""Drawings of plates, some of them nested one kerf apart, as DXF."""
 
 import io
 from collections.abc import Sequence
@@ -20,12 +20,16 @@ def rows(columns: int, count: int, *, width: float = 12.0, height: float = 9.0, 
     ]
 
 
-def drawn(boxes: Sequence[Box], circles: Sequence[tuple[float, float, float]] = ()) -> bytes:
-    """The bytes of a drawing of rectangles and of circles (x, y, radius), mm."""
+def drawn(
+    boxes: Sequence[Box],
+    circles: Sequence[tuple[float, float, float]] = (),
+    outlines: Sequence[Sequence[tuple[float, float]]] = (),
+) -> bytes:
+    """The bytes of a drawing of rectangles, of circles (x, y, radius), and of other closed outlines, mm."""
     document = ezdxf.new("R2010", units=ezdxf.units.MM)
-    for x, y, width, height in boxes:
-        corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
-        document.modelspace().add_lwpolyline(corners, close=True)
+    corners = [[(x, y), (x + width, y), (x + width, y + height), (x, y + height)] for x, y, width, height in boxes]
+    for points in (*corners, *outlines):
+        document.modelspace().add_lwpolyline(points, close=True)
     for x, y, radius in circles:
         document.modelspace().add_circle((x, y), radius)
     stream = io.StringIO()
