@@ -10,16 +10,15 @@ for twice the ticks that are measured: between the corners of a small gear there
 from __future__ import annotations
 
 import argparse
-import io
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
-import ezdxf
 import numpy as np
 import shapely
 
+from benchmarks.random_parts import KINDS, PER_SHEET, content, placed, sheet
 from deltacam import pipeline
 from deltacam.cutting import kerf
 from deltacam.cutting.leads.approaches import approaches
@@ -35,8 +34,6 @@ from deltacam.robot.robot import Robot
 ROBOTS: Final = ("delta-300", "irb360-1600", "irb360-1130", "rl5-1450", "delta-x-s-d600", "delta-300 cubic")
 FEEDS: Final = (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4)
 SHAPES: Final = ("arc", "line+arc")
-KINDS: Final = ("rectangle", "star", "blob", "gear", "slot", "circle", "tiny hole")
-PER_SHEET: Final = 10
 REACHED: Final = 0.95
 """Part of the speed of the flying lap, at the first ticks, from which on it counts as reached."""
 
@@ -46,17 +43,9 @@ ALMOST: Final = 0.98
 _TICKS: Final = 3
 _CORNER: Final = np.radians(15.0)
 _CORNER_SIZE: Final = 0.4e-3  # m, of a rounded corner
-_WEB: Final = 0.8  # mm of material between lines, at least
 _PLACES: Final = 180
 _FINE: Final = 8  # places per tick
 _BEFORE: Final = 0.03  # m, before the start of a contour on a flying lap, and behind it
-
-
-class Drawn(NamedTuple):
-    """A closed line of a sheet, mm, with bulges, (N, 3), and what kind it is."""
-
-    vertices: Array
-    kind: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +55,6 @@ class Begun:
     Attributes:
         kind: of the contour.
         hole: whether it is one.
-        lead: whether there is a lead-in.
         share: the speed at the first tick, or in the first ticks together, as a part of that of the flying lap.
         at_feed: the speed at the first tick as a part of the feed.
         lacking: why geometry leaves no room to reach it; empty where it does.
@@ -75,102 +63,10 @@ class Begun:
 
     kind: str
     hole: bool
-    lead: bool
     share: float
     at_feed: float
     lacking: str
     why: str
-
-
-def shape(kind: str, size: float, chance: np.random.Generator) -> Array:
-    """The vertices of a line of a kind about the origin that fits into a circle of ``size`` mm diameter."""
-    half = 0.5 * size
-    if kind == "rectangle":
-        ratio = chance.uniform(0.4, 1.0)
-        x = half / np.hypot(1.0, ratio)
-        return np.array([[-x, -x * ratio, 0], [x, -x * ratio, 0], [x, x * ratio, 0], [-x, x * ratio, 0]])
-    if kind == "slot":
-        width = chance.uniform(0.2, 0.6) * size
-        x, y = 0.5 * (size - width), 0.5 * width
-        return np.array([[-x, -y, 0], [x, -y, 1], [x, y, 0], [-x, y, 1]])
-    if kind in ("circle", "tiny hole"):
-        return np.array([[half, 0, 1], [-half, 0, 1]])
-    if kind == "gear":
-        count = int(chance.integers(8, 25))
-        angle = 2.0 * np.pi * (np.arange(4 * count) + np.tile([0.0, 0.1, 0.0, 0.1], count)) / (4 * count)
-        radius = half * np.tile([0.84, 1.0, 1.0, 0.84], count)
-        bulge = np.tile([0.0, np.tan(np.pi / (8 * count)), 0.0, np.tan(np.pi / (8 * count))], count)
-        return np.stack([radius * np.cos(angle), radius * np.sin(angle), bulge], axis=1)
-    count = int(chance.integers(3, 13))
-    angle = 2.0 * np.pi * (np.arange(count) + chance.uniform(-0.2, 0.2, count)) / count
-    radius = half * chance.uniform(0.6, 0.95, count)
-    bulge = np.zeros(count) if kind == "star" else chance.uniform(-0.06, 0.12, count)
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle), bulge], axis=1)
-
-
-def sheet(chance: np.random.Generator, room: float) -> list[Drawn]:
-    """The lines of a sheet that is at most ``room`` mm wide and deep: parts in rows, with holes in the larger ones."""
-    gap, found = float(chance.uniform(1.0, 10.0)), list[Drawn]()
-    x = y = depth = 0.0
-    while len(found) < PER_SHEET:
-        kind = str(chance.choice(KINDS[:-1]))
-        size = float(np.exp(chance.uniform(np.log(4.0), np.log(0.45 * room))))
-        if x + size > room:
-            x, y, depth = 0.0, y + depth + gap, 0.0
-        if y + size > room:
-            size, kind = min(8.0, size), "circle"
-        found.append(_placed(kind, size, (x + 0.5 * size, y + 0.5 * size), chance))
-        if size > 12.0:
-            free = _area(found[-1]).buffer(-_WEB)
-            for hole in _holes((x + 0.5 * size, y + 0.5 * size), size, gap, PER_SHEET - len(found), chance):
-                if free.contains(_area(hole)):
-                    free = free.difference(_area(hole).buffer(_WEB))
-                    found.append(hole)
-        x, depth = x + size + gap, max(depth, size)
-    return found
-
-
-def _placed(kind: str, size: float, centre: tuple[float, float], chance: np.random.Generator) -> Drawn:
-    turn = chance.uniform(0.0, 2.0 * np.pi)
-    own = shape(kind, size, chance)
-    cos, sin = np.cos(turn), np.sin(turn)
-    own[:, :2] = own[:, :2] @ np.array([[cos, sin], [-sin, cos]]) + centre
-    return Drawn(own, kind)
-
-
-def _area(line: Drawn) -> Any:
-    """The polygon that a line surrounds, mm."""
-    curve = Curve(points=line.vertices[:, :2], bulges=line.vertices[:, 2])
-    return shapely.Polygon(curves.flatten(curve, 1e-3)[0])
-
-
-def _holes(
-    centre: tuple[float, float], size: float, gap: float, most: int, chance: np.random.Generator
-) -> Iterator[Drawn]:
-    """Holes on a circle in a part, which has no vertex nearer to its centre than 0.2 of its size."""
-    inner = 0.17 * size
-    for index in range(min(most, int(chance.integers(0, 6)))):
-        kind = str(chance.choice(KINDS[1:]))
-        largest = 0.9 * inner if kind != "tiny hole" else 1.5
-        own = float(np.exp(chance.uniform(np.log(0.8), np.log(max(largest, 0.9)))))
-        if index == 0 and chance.random() < 0.4:
-            yield _placed(kind, min(1.6 * inner, 60.0), centre, chance)
-            return
-        angle = 2.0 * np.pi * index / 6.0
-        arm = 0.55 * inner if own < 0.5 * inner - 0.5 * min(gap, 1.0) else None
-        if arm is not None:
-            yield _placed(kind, own, (centre[0] + arm * np.cos(angle), centre[1] + arm * np.sin(angle)), chance)
-
-
-def content(lines: list[Drawn]) -> bytes:
-    """The bytes of a DXF file of closed lines."""
-    document = ezdxf.new("R2000")
-    document.header["$INSUNITS"] = 4
-    for line in lines:
-        document.modelspace().add_lwpolyline(line.vertices.tolist(), format="xyb", close=True)
-    stream = io.StringIO()
-    document.write(stream)
-    return stream.getvalue().encode()
 
 
 def robot_of(name: str) -> Robot:
@@ -222,10 +118,11 @@ def begun(planned: pipeline.Planned, drawn: dict[int, str], parts: list[Any]) ->
     place = to_sheet(program.placement, program.robot.forward(program.q))
     speed = np.hypot(*np.diff(place, axis=0).T) * program.rate_hz
     cuts = kerf.offset(planned.drawing.contours, kerf=process.kerf).cuts
-    first: dict[int, tuple[int, bool]] = {}
+    first: dict[int, tuple[int, Array]] = {}
     for before, block in zip(program.blocks, program.blocks[1:], strict=False):
         if block.kind is BlockKind.CUT and block.contour is not None:
-            first.setdefault(block.contour, (block.first, before.kind is BlockKind.LEAD_IN))
+            lead = speed[before.first : block.first] if before.kind is BlockKind.LEAD_IN else np.empty(0)
+            first.setdefault(block.contour, (block.first, lead))
     rings = {number: _ring(cuts, number, place[row : row + 2]) for number, (row, _) in first.items()}
     laps = _flying(rings, planned)
     found = []
@@ -234,11 +131,12 @@ def begun(planned: pipeline.Planned, drawn: dict[int, str], parts: list[Any]) ->
         along = np.cumsum(np.concatenate([[0.0], speed[row : row + _TICKS]]) / program.rate_hz)
         needed = np.interp(along, *laps[number])[1:] - np.interp(0.0, *laps[number])
         # The first tick alone, and all of the first ticks together: a lap has its ticks at other places.
-        share = float(np.min((needed * program.rate_hz / np.arange(1, _TICKS + 1))[[0, -1]]))
+        shares = (needed * program.rate_hz / np.arange(1, _TICKS + 1))[[0, -1]]
+        share = float(shares.min())
         at_feed, allowed = float(speed[row]) / process.feed, float(along[1] / needed[0])
         room = "" if share >= ALMOST else _lacking(rings[number], contour, allowed, planned, parts)
-        why = "" if share >= REACHED else _why(number, planned, lead, share)
-        found.append(Begun(drawn[number], contour.is_hole, lead, share, at_feed, room, why))
+        why = "" if share >= REACHED else _why(number, planned, share, room or _reason(lead, allowed, float(shares[0])))
+        found.append(Begun(drawn[number], contour.is_hole, share, at_feed, room, why))
     return found
 
 
@@ -355,9 +253,19 @@ def _ability(robot: Robot, where: Placement, place: Array) -> tuple[float, float
     return acceleration, jerk
 
 
-def _why(number: int, planned: pipeline.Planned, lead: bool, share: float) -> str:
-    where = f"{planned.drawing.file}, contour {number}: {100.0 * share:.0f} % of the speed"
-    return f"{where}, {'after a lead-in' if lead else 'pierced on the contour'}"
+def _reason(lead: Array, allowed: float, share: float) -> str:
+    """Why the speed that is ``allowed``, m/s, is not reached, by the speeds on the lead-in, (N,) m/s."""
+    if not len(lead):
+        return "it is pierced on the contour"
+    if lead.max() < REACHED * allowed:
+        return "it does not come up to the speed on the lead-in"
+    if share < REACHED:
+        return "it slows down where the lead-in goes over into the contour"
+    return "it slows down more than a lap just behind the start"
+
+
+def _why(number: int, planned: pipeline.Planned, share: float, reason: str) -> str:
+    return f"{planned.drawing.file}, contour {number}: {100.0 * share:.0f} % of the speed, {reason}"
 
 
 def measure(index: int, seed: int) -> tuple[list[Begun], float, float, bool, str]:
@@ -391,7 +299,7 @@ def cost(counts: tuple[int, ...]) -> Iterator[tuple[int, float]]:
     process: Process = replace(load_process("steel-1mm-fibre"), lead_in=Lead("arc"), lead_out=Lead("arc"))
     where = Placement(0.0, 0.0, 0.0, robot.workspace.sheet_z)
     chance = np.random.default_rng(1)
-    drawn = [_placed(KINDS[index % 6], 7.0, (0.0, 0.0), chance).vertices for index in range(60)]
+    drawn = [placed(KINDS[index % 6], 7.0, (0.0, 0.0), chance).vertices for index in range(60)]
     shapes = [Contour(1, Curve(points=1e-3 * one[:, :2], bulges=one[:, 2]), "CUT", ("0",), 0, None) for one in drawn]
     paths = [kerf.offset([one], kerf=process.kerf).cuts[0] for one in shapes]
     for count in counts:
@@ -450,7 +358,7 @@ def main() -> None:
     show(found)
     print("\nnot reached:")
     for one in sorted((one for one in found if one.why), key=lambda one: one.share):
-        print(f"  {one.why}{', ' if one.lacking else ''}{one.lacking} ({one.kind})")
+        print(f"  {one.why} ({one.kind}, {'hole' if one.hole else 'outline'})")
     print(
         f"\nburnt beyond the tolerances: {1e12 * area:.0f} um2; the tool came {1e6 * worst:.1f} um too near to a part"
     )

@@ -21,6 +21,7 @@ from deltacam.model import BlockKind, Lead, Mode
 from deltacam.pipeline import Outputs, Planned, plan, plan_to_folder
 from deltacam.program.formats import read_program
 from deltacam.report.text import to_text
+from deltacam.robot.rapid import Rapids
 from tests.sheets import drawn
 
 DXF = Path(__file__).parent / "data" / "dxf"
@@ -138,6 +139,12 @@ def test_without_leads_the_first_cut_begins_at_its_point_nearest_in_time_to_the_
     park = program.robot.workspace.park
     # The robot is not as fast in all directions, so that the nearest in time is not quite the nearest.
     assert np.hypot(*(pierce - park)) == pytest.approx(path.distance(shapely.Point(park)), rel=0.03)
+    rapids, places = Rapids(program.robot), np.asarray(path.segmentize(0.2e-3).coords)
+    there_and_back = [
+        rapids(np.broadcast_to(park, one.shape), one) + rapids(one, np.broadcast_to(park, one.shape))
+        for one in (pierce[None], places)
+    ]
+    assert there_and_back[0][0] <= 1.0005 * there_and_back[1].min()
 
 
 @pytest.mark.parametrize(
