@@ -14,7 +14,7 @@ from deltacam.errors import DeltacamError
 from deltacam.units import parse_duration, parse_memory
 from deltacam_cli import options
 from deltacam_cli.main import EXIT_FAILED, EXIT_INTERRUPTED, LONGEST_MESSAGE, show_json
-from deltacam_cli.planning import JOBS, how, how_options, planning_options, settings
+from deltacam_cli.planning import HOW, JOBS, how, how_options, planning_options, settings
 from deltacam_cli.progress import PartsProgress, stopping_cleanly
 
 if TYPE_CHECKING:
@@ -26,10 +26,6 @@ if TYPE_CHECKING:
 
 PATH: Final = click.Path(path_type=Path)
 _MACHINES: Final = ("jobs", "time_limit", "memory", "scheduler", "tls_ca", "tls_cert", "tls_key")
-_HOW: Final = (
-    *("at", "rotate", "place", "order_time", "order_seed", "parts_together"),
-    *("dry_run", "frame", "what_if"),
-)
 _TIME: Final = (1.0, 7 * 86400.0)
 _MEMORY: Final = (500e6, 1e15)
 
@@ -136,8 +132,8 @@ def _parts(found: Found, rules: Rules, values: Mapping[str, Any]) -> list[Part]:
     from deltacam.batch.parts import Part
 
     own = options.defaults()
-    given = how(**{name: values[name] for name in _HOW})
-    others = {name: value for name, value in values.items() if name not in _HOW}
+    given = how(**{name: values[name] for name in HOW})
+    others = {name: value for name, value in values.items() if name not in HOW}
     known: dict[tuple[str | None, ...], dict[str, Any]] = {}
     parts = []
     for name, path in found.drawings:

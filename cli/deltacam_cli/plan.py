@@ -9,7 +9,7 @@ import click
 
 from deltacam_cli import options
 from deltacam_cli.main import EXIT_FAILED, LONGEST_MESSAGE, show_json
-from deltacam_cli.planning import JOBS, how, how_options, planning_options, settings
+from deltacam_cli.planning import HOW, JOBS, how, how_options, planning_options, settings
 from deltacam_cli.progress import ProgressLine
 
 if TYPE_CHECKING:
@@ -39,15 +39,6 @@ def command(
     drawing: Path,
     folder: Path,
     *,
-    dry_run: bool,
-    frame: bool,
-    at: str | None,
-    rotate: str | None,
-    place: str | None,
-    order_time: str | None,
-    order_seed: int,
-    parts_together: bool,
-    what_if: bool | None,
     starts: tuple[str, ...],
     from_contour: int | None,
     jobs: int | None,
@@ -68,20 +59,9 @@ def command(
 
     Outputs.of(drawing, folder).clear()  # before anything else can be refused
     own = options.defaults()
-    if from_contour is not None and frame:
+    if from_contour is not None and values["frame"]:
         raise click.UsageError("--from-contour says what is cut, and --frame cuts nothing")
-    given = how(
-        at=at,
-        rotate=rotate,
-        place=place,
-        order_time=order_time,
-        order_seed=order_seed,
-        parts_together=parts_together,
-        dry_run=dry_run,
-        frame=frame,
-        what_if=what_if,
-        starts=starts,
-    )
+    given = how(**{name: values.pop(name) for name in HOW}, starts=starts)
     with ProgressLine() as progress:
         planned, outputs = plan_to_folder(
             drawing,

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 JOBS = click.IntRange(0, 64)
+HOW = ("at", "rotate", "place", "order_time", "order_seed", "parts_together", "dry_run", "frame", "what_if")
+"""The names of `how_options`."""
 _ORDER_TIME = (0.0, 86_400.0)  # s
 
 _HOW = (
