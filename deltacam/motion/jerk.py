@@ -70,25 +70,47 @@ def limited(route: Route, grid: Grid, rows: Rows, robot: Robot, slowness: Array)
         slower = slowness[_interval(grid, base)] ** 2
         rough = _fastest(route, robot, base, all_of_it, slower, gap=_ROUGH_GAP)
         base = knots.again(route, grid, rough, ramps, robot)
-    slower = slowness[_interval(grid, base)] ** 2
-    tempo = _refined(route, robot, base, slower)
-    found = _shares(route, robot, tempo, slower)
-    shares = (np.maximum.reduceat(share, base.first[:-1]) / _CHECKED_LIMIT for share in found)
-    over = [share ** (1.0 / order) for order, share in enumerate(shares, start=1)]
-    return tempo.stretched(np.maximum(1.0, np.maximum.reduce(over)))
+    return _refined(route, robot, base, slowness[_interval(grid, base)] ** 2)
 
 
 def _refined(route: Route, robot: Robot, base: Base, slower: Array) -> Tempo:
-    """The base at its fastest rate, with lower limits where it was found over them between the stations."""
+    """The base at its fastest rate within the limits.
+
+    It is done again with lower limits where it was found over them between the stations. Of what is tried for a move
+    that counts which is fastest once its time is stretched to take away what is left.
+    """
     lower = _Shares(*np.ones((3, len(base.width))))
     tempo: Tempo = _fastest(route, robot, base, lower, slower, gap=retime.GAP)
+    found = _shares(route, robot, tempo, slower)
+    best = tempo.stretched(_stretch(base, found))
     for _ in range(_ROUNDS):
-        found = _shares(route, robot, tempo, slower)
         if max(share.max() for share in found) <= _ALLOWED:
             break
-        lower = _Shares(*(low / _spread(np.maximum(share, 1.0)) for low, share in zip(lower, found, strict=True)))
-        tempo = _fastest(route, robot, base, lower, slower, near=tempo, gap=retime.GAP)
-    return tempo
+        over = _Shares(*(_spread(np.maximum(share, 1.0)) for share in found))
+        lower = _Shares(*(low / share for low, share in zip(lower, over, strict=True)))
+        tempo = _fastest(route, robot, base, lower, slower, near=_shrunk(tempo, over), gap=retime.GAP)
+        found = _shares(route, robot, tempo, slower)
+        best = _faster(best, tempo.stretched(_stretch(base, found)))
+    return best
+
+
+def _shrunk(tempo: Tempo, over: _Shares) -> Tempo:
+    """The rate, every move so much slower that it is within limits that are lower by these shares (I,)."""
+    base, largest = tempo.base, np.maximum(over.speed**2, np.maximum(over.acceleration, over.jerk))
+    return tempo.stretched(np.sqrt(np.maximum.reduceat(largest, base.first[:-1]) / _INSIDE_AGAIN))
+
+
+def _stretch(base: Base, found: _Shares) -> Array:
+    """By how much the time of every move must be stretched to take away what it is over the limits, (K,), >= 1."""
+    shares = (np.maximum.reduceat(share, base.first[:-1]) / _CHECKED_LIMIT for share in found)
+    over = [share ** (1.0 / order) for order, share in enumerate(shares, start=1)]
+    return np.asarray(np.maximum(1.0, np.maximum.reduce(over)))
+
+
+def _faster(one: Tempo, other: Tempo) -> Tempo:
+    """Of two rates of one base the one that takes less time, move by move."""
+    chosen = np.repeat(other.durations < one.durations, np.diff(one.base.first) + 2)
+    return Tempo.of(one.base, np.where(chosen, other.weights, one.weights))
 
 
 def _steady(route: Route, grid: Grid, robot: Robot) -> Array:
@@ -104,16 +126,13 @@ def _steady(route: Route, grid: Grid, robot: Robot) -> Array:
 def _fastest(
     route: Route, robot: Robot, base: Base, lower: _Shares, slower: Array, *, near: Tempo | None = None, gap: float
 ) -> Tempo:
-    """The base at its fastest rate within shares (I,) of the limits; ``near`` is such a rate for larger shares."""
+    """The base at its fastest rate within shares (I,) of the limits; ``near`` is a rate strictly within them."""
     u, stations = _stations(route, robot, base, lower, slower)
     rows = retime.Rows.at(base, u, stations)
-    if near is None:
-        start = retime.scaled(base, rows, _local(base, stations.steady().min(axis=0)), _INSIDE)
-        return Tempo.of(base, retime.fastest(base, rows, start, gap=gap))
-    share = np.minimum(lower.speed**2, np.minimum(lower.acceleration, lower.jerk))
-    shrunk = _INSIDE_AGAIN * np.minimum.reduceat(share, base.first[:-1])
-    start = near.weights * np.repeat(shrunk, np.diff(base.first) + 2)
-    return Tempo.of(base, retime.fastest(base, rows, start, gap=gap, first_gap=_GAP_AGAIN))
+    if near is not None:
+        return Tempo.of(base, retime.fastest(base, rows, near.weights, gap=gap, first_gap=_GAP_AGAIN))
+    start = retime.scaled(base, rows, _local(base, stations.steady().min(axis=0)), _INSIDE)
+    return Tempo.of(base, retime.fastest(base, rows, start, gap=gap))
 
 
 def _local(base: Base, rate: Array) -> Array:
