@@ -9,13 +9,14 @@ import pytest
 import shapely
 
 from deltacam.geometry import curve as curves
-from deltacam.model import Corner, Curve
+from deltacam.model import Corner, Curve, Cut, Placement, Process
 from deltacam.motion.corners import Pace, pieces
 from deltacam.motion.jerk import limited
 from deltacam.motion.path import Path, straight
 from deltacam.motion.route import Grid, Limits, Route
 from deltacam.motion.rows import Rows
 from deltacam.motion.sample import sample
+from deltacam.motion.setpoints import plan_motion
 from deltacam.motion.tempo import Tempo
 from deltacam.robot.reader import load_robot
 from deltacam.robot.robot import Interpolation, Robot
@@ -163,3 +164,45 @@ def test_where_it_is_told_to_be_slower_the_speed_is_lower_and_the_acceleration_b
     assert (motion.speed <= 0.5 * route.speed[segment] * 1.001).all()
     assert np.abs(motion.acceleration).max() <= 0.25 * CAP * 1.001
     assert half.durations[0] > free.durations[0]
+
+
+def test_a_limit_that_is_passed_between_stations_slows_a_motion_down_only_there() -> None:
+    """A blob with its leads: its first motion has 13 times the jerk allowed for in one interval near a sharp corner."""
+    rows = [
+        (67048.609, 22009.468, 0.000000000),
+        (67146.949, 22027.611, -0.414213562),
+        (75560.733, 16234.872, 0.035293432),
+        (76283.594, 13438.960, -0.012617347),
+        (77761.606, 8685.309, 0.160913952),
+        (77779.197, 8659.335, -0.004940943),
+        (84196.834, 3613.676, 0.227913176),
+        (84239.044, 3603.882, 0.094221628),
+        (88513.772, 5452.004, 0.060551359),
+        (93279.941, 7247.530, 0.131214049),
+        (93298.955, 7264.967, 0.004038971),
+        (96813.572, 12875.752, 0.107229494),
+        (96820.601, 12895.756, -0.015943980),
+        (97384.776, 16479.838, 0.093716939),
+        (97384.797, 16498.418, -0.020387387),
+        (96328.694, 23731.202, 0.300115276),
+        (96293.757, 23773.763, -0.019152878),
+        (90367.428, 25860.959, 0.005225681),
+        (90366.452, 25861.334, -0.011072433),
+        (86640.644, 27341.558, 0.240920054),
+        (86595.223, 27338.258, 0.024334159),
+        (81297.377, 23760.233, 0.091454839),
+        (75251.192, 19140.290, 0.196796482),
+        (75238.296, 19104.661, 0.035293432),
+        (75560.733, 16234.872, 0.012817176),
+        (75777.618, 15207.633, -0.414213562),
+        (70423.641, 6508.063, 0.000000000),
+        (70326.359, 6484.905, 0.000000000),
+    ]
+    columns = np.array(rows)
+    curve = Curve(points=1e-6 * columns[:, :2], bulges=columns[:-1, 2], closed=False)
+    robot = load_robot("delta-300")
+    process = Process(name="", source="", material="", thickness=1e-3, kerf=0.0, feed=0.3, power=1.0, pierce_time=0.0)
+    where = Placement(-0.048667828, -0.058088115, 0.0, robot.workspace.sheet_z)
+    cut = Cut(1, "", ("2F",), curve)
+    found = plan_motion([cut], robot=robot, process=process, placement=where, drawing_error=0.0, jobs=1)
+    assert found.held[0].time < 0.75
