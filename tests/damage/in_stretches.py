@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from deltacam.model import BlockKind, Heat
+from deltacam.cutting.kerf import offset
+from deltacam.geometry import curve as curves
+from deltacam.model import Block, BlockKind, Heat
 from deltacam.program.program import Program
 from tests.damage.aim import NoPlaceError
 from tests.damage.example import Example
@@ -23,7 +25,7 @@ def lead_out_said_to_be_tab(case: Example, amount: float, chance: np.random.Gene
 def longer_overcut_in_meta(case: Example, amount: float, _: np.random.Generator) -> Program:
     """The process asks for an overcut that is longer than the shortest there is by so many limits."""
     process = case.program.process
-    reached = [_length(case, slice(*rows)) + step for rows, step in _overcuts(case)]
+    reached = [length + step for length, step in _overcuts(case)]
     if not reached:
         raise NoPlaceError
     return replace(case.program, process=replace(process, overcut=min(reached) + amount * _limit(case)))
@@ -33,7 +35,7 @@ def shorter_overcut_in_meta(case: Example, amount: float, _: np.random.Generator
     """The process asks for an overcut that is shorter than the longest there is by so many limits."""
     process = case.program.process
     tick = process.feed / case.rate
-    over = [_length(case, slice(*rows)) - max(step, tick) - step for rows, step in _overcuts(case)]
+    over = [length - max(step, tick) - step for length, step in _overcuts(case)]
     if not over or max(over) - amount * _limit(case) < 0.0:
         raise NoPlaceError
     return replace(case.program, process=replace(process, overcut=max(over) - amount * _limit(case)))
@@ -91,14 +93,32 @@ def _renamed(case: Example, old: BlockKind, new: BlockKind, amount: float, chanc
     return replace(case.program, blocks=tuple(blocks))
 
 
-def _overcuts(case: Example) -> list[tuple[tuple[int, int], float]]:
-    """The rows of every overcut, and the longest step of the tool about it, m."""
+def _overcuts(case: Example) -> list[tuple[float, float]]:
+    """How long every overcut is along its contour, and the longest step of the tool about it, m."""
     found = []
     for block in case.program.blocks:
         if block.kind is BlockKind.OVERCUT:
             about = np.linalg.norm(np.diff(case.tool[block.first - 1 : block.last + 3], axis=0), axis=1)
-            found.append(((block.first, block.last + 1), float(about[: block.last - block.first + 3].max())))
+            found.append((_along(case, block), float(about[: block.last - block.first + 3].max())))
     return found
+
+
+def _along(case: Example, block: Block) -> float:
+    """How far the rows of a block go along the exact path of their contour, m; the tool itself cuts its corners."""
+    contour = next(one for one in case.drawing.contours if one.number == block.contour)
+    way = _length(case, slice(block.first, block.last + 1))
+    ends = case.sheet(case.tool[[block.first, block.last + 1]])
+    path = min(
+        (cut.curve for cut in offset([contour], kerf=case.program.process.kerf).cuts),
+        key=lambda curve: curves.nearest(curve, ends[0])[2],
+    )
+    before = np.concatenate([[0.0], np.cumsum(curves.lengths(path))])
+    places = [before[segment] + inside for segment, inside, _ in (curves.nearest(path, one) for one in ends)]
+    around = float(before[-1])
+    ahead = float(places[1] - places[0]) % around
+    rounds = around * np.arange(int(way / around) + 2)
+    lengths = np.concatenate([ahead + rounds, around - ahead + rounds])
+    return float(lengths[np.argmin(np.abs(lengths - way))])
 
 
 def _length(case: Example, rows: slice) -> float:
