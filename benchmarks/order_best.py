@@ -205,7 +205,7 @@ def parts_at_once(problem: Problem, solve: Callable[[Problem, np.ndarray], list[
     return best_places(problem, [cut for part in parts.owner[answer].tolist() for cut in chains[part]])
 
 
-def _keep_rule(model: object, problem: Problem, nodes: dict[int, list[int]]) -> None:
+def _keep_rule(model: Any, problem: Problem, nodes: dict[int, list[int]]) -> None:
     """Tell OR-tools what comes before what: by how many places were passed."""
     pairs = [
         (cut, outer)
@@ -215,12 +215,12 @@ def _keep_rule(model: object, problem: Problem, nodes: dict[int, list[int]]) -> 
     ]
     if not pairs:
         return
-    model.AddConstantDimension(1, problem.count + 2, True, "passed")  # type: ignore[attr-defined]
-    passed = model.GetDimensionOrDie("passed")  # type: ignore[attr-defined]
+    model.AddConstantDimension(1, problem.count + 2, True, "passed")
+    passed = model.GetDimensionOrDie("passed")
     for cut, outer in pairs:
         for one in nodes[cut]:
             for other in nodes[outer]:
-                model.solver().Add(passed.CumulVar(one) <= passed.CumulVar(other))  # type: ignore[attr-defined]
+                model.solver().Add(passed.CumulVar(one) <= passed.CumulVar(other))
 
 
 def ours(sheet: Sheet, cost: Rapids, problem: Problem, tries: int) -> list[int]:
@@ -228,8 +228,8 @@ def ours(sheet: Sheet, cost: Rapids, problem: Problem, tries: int) -> list[int]:
     found = []
     for seed in SEEDS if tries else (0,):
         effort = tries * len(sheet.cuts) if tries else None
-        options = {"parents": sheet.parents, "start": (0.0, 0.0), "cost": cost, "places": sheet.places}
-        ordered = order(sheet.cuts, **options, seed=seed, effort=effort)  # type: ignore[arg-type]
+        options: dict[str, Any] = {"parents": sheet.parents, "start": (0.0, 0.0), "cost": cost, "places": sheet.places}
+        ordered = order(sheet.cuts, **options, seed=seed, effort=effort)
         first = problem.first[np.array(ordered.index)]
         found.append([int(base) + int(place or 0) for base, place in zip(first, ordered.place, strict=True)])
     return min(found, key=lambda places: cost_of(problem, places))

@@ -14,7 +14,7 @@ from deltacam.errors import DeltacamError
 from deltacam.units import parse_duration, parse_memory
 from deltacam_cli import options
 from deltacam_cli.main import EXIT_FAILED, EXIT_INTERRUPTED, LONGEST_MESSAGE, show_json
-from deltacam_cli.planning import HOW, JOBS, how, how_options, planning_options, settings
+from deltacam_cli.planning import HOW_NAMES, JOBS, how, how_options, planning_options, settings
 from deltacam_cli.progress import PartsProgress, stopping_cleanly
 
 if TYPE_CHECKING:
@@ -132,8 +132,8 @@ def _parts(found: Found, rules: Rules, values: Mapping[str, Any]) -> list[Part]:
     from deltacam.batch.parts import Part
 
     own = options.defaults()
-    given = how(**{name: values[name] for name in HOW})
-    others = {name: value for name, value in values.items() if name not in HOW}
+    given = how(**{name: values[name] for name in HOW_NAMES})
+    others = {name: value for name, value in values.items() if name not in HOW_NAMES}
     known: dict[tuple[str | None, ...], dict[str, Any]] = {}
     parts = []
     for name, path in found.drawings:

@@ -9,7 +9,7 @@ import click
 
 from deltacam_cli import options
 from deltacam_cli.main import EXIT_FAILED, LONGEST_MESSAGE, show_json
-from deltacam_cli.planning import HOW, JOBS, how, how_options, planning_options, settings
+from deltacam_cli.planning import HOW_NAMES, JOBS, how, how_options, planning_options, settings
 from deltacam_cli.progress import ProgressLine
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def command(
     own = options.defaults()
     if from_contour is not None and values["frame"]:
         raise click.UsageError("--from-contour says what is cut, and --frame cuts nothing")
-    given = how(**{name: values.pop(name) for name in HOW}, starts=starts)
+    given = how(**{name: values.pop(name) for name in HOW_NAMES}, starts=starts)
     with ProgressLine() as progress:
         planned, outputs = plan_to_folder(
             drawing,

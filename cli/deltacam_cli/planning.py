@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 JOBS = click.IntRange(0, 64)
-HOW = ("at", "rotate", "place", "order_time", "order_seed", "parts_together", "dry_run", "frame", "what_if")
-"""The names of `how_options`."""
 _ORDER_TIME = (0.0, 86_400.0)  # s
 
 _HOW = (
@@ -44,6 +42,19 @@ _HOW = (
         help="Also say how long each cut would take without each limit. Without either: where that is quick.",
     ),
 )
+
+HOW_NAMES: Final = (
+    "at",
+    "rotate",
+    "place",
+    "order_time",
+    "order_seed",
+    "parts_together",
+    "dry_run",
+    "frame",
+    "what_if",
+)
+"""What `how_options` are called where `how` takes them."""
 
 _MACHINE = (
     click.option("--robot", help="A built-in robot, or a robot file (.toml). Without deltacam.toml: delta-300."),

@@ -70,6 +70,7 @@ _ALIKE: Final = 0.01  # shares that differ by less are as good
 _BLENDED: Final = 0.45  # of the tolerance, for the blend between a lead and the contour
 _SPARE: Final = 1.06  # of the speed: leads of full size are made for so much, as what they bring is but foretold
 _NAMED: Final = 5
+_ROOM: Final = "leave more room between the parts, or lower the feed (--feed)"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -303,9 +304,6 @@ def _findings(cuts: Sequence[Cut], found: Sequence[tuple[Approach, ...]], proces
         what = f"{count} pierced on the contour, where no lead-in has room: {places}{more}"
         findings.append(Finding(what, where=none[0].where, hint=_ROOM, kind="lead"))
     return tuple(findings)
-
-
-_ROOM: Final = "leave more room between the parts, or lower the feed (--feed)"
 
 
 def _at(cut: Cut) -> str:
